@@ -9,13 +9,13 @@ import numpy as np
 from ddlib._check import integer
 from workshop import BOOK
 
-_FOLDER = BOOK / "data"
+DATA = BOOK / "data"
 _PUBLISHED_TEST = ("e", "q", "v")  # kept for the test by the loader of Deep Lagrangian Networks
 _RATE = 1000  # samples a second of the real arm's recording
 
 
 @dataclass(frozen=True)
-class _Characters:
+class Characters:
     """Characters that a simulated two-joint arm draws; angles from the horizontal, rad; N m."""
 
     labels: np.ndarray
@@ -35,29 +35,29 @@ class _Characters:
     def __len__(self) -> int:
         return len(self.labels)
 
-    def of(self, labels) -> _Characters:
+    def of(self, labels) -> Characters:
         """Those of some labels, in the order of the file."""
         labels = set(labels)
         if not labels or labels - set(self.labels):
             raise ValueError(
                 f"labels must be some of {', '.join(self.labels)}, got {sorted(labels)}"
             )
-        kept = np.isin(self.labels, list(labels))
-        rows = np.repeat(kept, self.length)
+        wanted = np.isin(self.labels, list(labels))
+        rows = np.repeat(wanted, self.length)
         chosen = {
-            f.name: getattr(self, f.name)[kept if f.name in ("labels", "length") else rows]
+            f.name: getattr(self, f.name)[wanted if f.name in ("labels", "length") else rows]
             for f in fields(self)
         }
         return replace(self, **chosen)
 
-    def split(self, test=_PUBLISHED_TEST) -> tuple[_Characters, _Characters]:
+    def split(self, test=_PUBLISHED_TEST) -> tuple[Characters, Characters]:
         """The characters to learn from, and those to be tested on."""
         test = set(test)
         return self.of(set(self.labels) - test), self.of(test)
 
 
 @dataclass(frozen=True)
-class _RealArm:
+class RealArm:
     """A recording of a real arm."""
 
     t: np.ndarray
@@ -65,32 +65,32 @@ class _RealArm:
     current: np.ndarray  # of the motors, A
     step: float
 
-    def at(self, rate: int) -> _RealArm:
+    def at(self, rate: int) -> RealArm:
         """The same at fewer samples a second, each the mean of several."""
         now = round(1 / self.step)
         if now % integer("rate", rate, 1, now):
             raise ValueError(f"rate must divide {now} samples a second, got {rate}")
         many = now // rate
-        count = len(self.t) // many
+        samples = len(self.t) // many
         t, q, current = (
-            x[: count * many].reshape(count, many, *x.shape[1:]).mean(1)
+            x[: samples * many].reshape(samples, many, *x.shape[1:]).mean(1)
             for x in (self.t, self.q, self.current)
         )
-        return _RealArm(t, q, current, many * self.step)
+        return RealArm(t, q, current, many * self.step)
 
 
-def _read_characters() -> _Characters:
+def read_characters() -> Characters:
     """Twenty characters of the repository milutter/deep_lagrangian_networks (MIT licence)."""
-    with np.load(_FOLDER / "characters.npz") as file:
-        return _Characters(**file)
+    with np.load(DATA / "characters.npz") as file:
+        return Characters(**file)
 
 
-def staubli() -> _RealArm:
+def staubli() -> RealArm:
     """Nine seconds of a Stäubli TX40, six joints on exciting trajectories (Apache licence 2.0).
 
     Source: repository thanhndv212/figaroh-examples, examples/staubli_TX40, of which each sample is
     the mean of five.
     """
-    with np.load(_FOLDER / "staubli-tx40.npz") as file:
+    with np.load(DATA / "staubli-tx40.npz") as file:
         q, current = np.deg2rad(file["position_deg"]), np.array(file["current_a"])
-    return _RealArm(np.arange(len(q)) / _RATE, q, current, 1 / _RATE)
+    return RealArm(np.arange(len(q)) / _RATE, q, current, 1 / _RATE)

@@ -6,9 +6,9 @@ from hypothesis import given, strategies as st
 from scipy.integrate import cumulative_simpson, solve_ivp
 
 from beyond.control.adaptive import (
-    _PARAMETERS,
+    PARAMETERS,
+    CraigHsuSastry,
     SlotineLi,
-    _CraigHsuSastry,
     mixed_regressor,
 )
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM, Arm
@@ -41,14 +41,14 @@ def test_regressor_is_linear_form_of_the_equations_of_motion(numbers):
     arm = REYES_KELLY_ARM
     base = [arm.a, arm.b, arm.d, *arm.gravity_moments]
     expected = arm.mass_matrix(q) @ a + arm.coriolis_matrix(q, qd) @ v + arm.gravity(q)
-    found = mixed_regressor(q, qd, v, a, _PARAMETERS[:5]) @ base
+    found = mixed_regressor(q, qd, v, a, PARAMETERS[:5]) @ base
     np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12)
     np.testing.assert_allclose(
-        mixed_regressor(q, qd, qd, a, _PARAMETERS[:5]), Arm.regressor(q, qd, a), atol=1e-12
+        mixed_regressor(q, qd, qd, a, PARAMETERS[:5]), Arm.regressor(q, qd, a), atol=1e-12
     )
     viscous, level = np.array([5.0, 2.0]), np.array([3.0, 1.0])
     friction = viscous * v + level * np.clip(v / 0.02, -1, 1)
-    found = mixed_regressor(q, qd, v, a, _PARAMETERS[5:]) @ [*viscous, *level]
+    found = mixed_regressor(q, qd, v, a, PARAMETERS[5:]) @ [*viscous, *level]
     np.testing.assert_allclose(found, friction, atol=1e-12)
 
 
@@ -83,7 +83,7 @@ def test_lyapunov_function_of_slotine_and_li_never_rises():
 
 
 def test_errors_of_craigs_loop_obey_their_linear_equation_and_parameters_are_found():
-    law = _CraigHsuSastry(
+    law = CraigHsuSastry(
         (60.0, 60.0), (16.0, 16.0), (8.0, 8.0), (4.0, 0.5, 0.2), 0.9 * TRUTH, **BOX
     )
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beyond.control.adaptive import SlotineLi, Watched, mixed_regressor
-from beyond.studies.loop.runs import adaptive as runs
+from beyond.studies.loop import adaptive_laws as runs
 from ddlib.dynamics import CMU_DD_ARM_II, end_point_error
 from ddlib.effects import IDEAL
 from ddlib.setups import KD, STATE_FEEDBACK
@@ -17,7 +17,7 @@ HALF = 0.5 * runs.TRUTH
 def test_a_law_beside_others_is_the_law_alone():
     slope, _ = runs.gains(STATE_FEEDBACK)
     own = SlotineLi(KD, slope, runs.SIZES[:3] ** 2, HALF)
-    laws = {"PD": runs._fixed(STATE_FEEDBACK)["PD"], "own": own}
+    laws = {"PD": runs.fixed_laws(STATE_FEEDBACK)["PD"], "own": own}
     found = runs.trial(laws, [[40.0, 30.0], [10.0, 20.0]], CMU_DD_ARM_II, IDEAL)
     watched = Watched(own)
     log = record(CMU_DD_ARM_II, watched, (40.0, 30.0), rest=runs._AFTER)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from numpy.polynomial import chebyshev, polynomial
 
-from beyond.rivals.bases import Polynomial, _Fourier
-from beyond.rivals.protocol import Cases, _NotFitted
+from beyond.rivals.bases import Fourier, Polynomial
+from beyond.rivals.protocol import Cases, NotFitted
 
 RNG = np.random.default_rng(3)
 
@@ -47,7 +47,7 @@ def test_a_fourier_series_is_recovered():
         angle = np.pi / 2 * at.reshape(len(at), 6) @ waves.T
         return np.stack([np.cos(angle).sum(1) + 0.3, np.sin(angle).sum(1)], -1)
 
-    rival = _Fourier(2).fit(cases(x, torque(x)))
+    rival = Fourier(2).fit(cases(x, torque(x)))
     np.testing.assert_allclose(rival.torque(asked), torque(asked), atol=1e-8)
 
 
@@ -76,7 +76,7 @@ def test_operations_are_counted_by_hand():
     assert plain == (6 + 6 + 15 + 56, 6 + 56, 0, 0)
     assert Polynomial(2).fit(data).operations()[:2] == (12 + 6 + 15 + 56, 6 + 6 + 56)
     # six waves along an axis; 13 functions for two torques
-    assert _Fourier(1).fit(data).operations() == (6 + 26, 6 + 26, 0, 12)
+    assert Fourier(1).fit(data).operations() == (6 + 26, 6 + 26, 0, 12)
     assert Polynomial(2).fit(data).count() == 56 + 2 + 12
 
 
@@ -84,8 +84,8 @@ def test_what_makes_no_sense_is_refused():
     for make, error, message in (
         (lambda: Polynomial(2, "legendre"), ValueError, "kind must be one of"),
         (lambda: Polynomial(9).fit(cases(states(), states()[..., 0])), ValueError, "5000 .* 5005"),
-        (lambda: _Fourier(2, period=0.5), ValueError, "period"),
-        (lambda: Polynomial(2).with_ridge(1.0), _NotFitted, r"Polynomial.* has learnt nothing"),
+        (lambda: Fourier(2, period=0.5), ValueError, "period"),
+        (lambda: Polynomial(2).with_ridge(1.0), NotFitted, r"Polynomial.* has learnt nothing"),
     ):
         with pytest.raises(error, match=message):
             make()

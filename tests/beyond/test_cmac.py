@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from beyond.rivals.cmac import CMAC, _Diverged
+from beyond.rivals.cmac import CMAC, Diverged
 from beyond.rivals.protocol import Cases
 
 BOX = np.stack([np.full((2, 3), -1.0), np.full((2, 3), 1.0)])
@@ -63,7 +63,7 @@ def test_blocks_of_updates_are_the_loop():
 def test_own_collisions_make_it_diverge_and_the_history_is_kept():
     cases = data(200)
     rival = CMAC(layers=32, slots=8, epochs=200, limits=BOX)
-    with pytest.raises(_Diverged, match=r"rate x overlap is .* must be below 2: take more slots"):
+    with pytest.raises(Diverged, match=r"rate x overlap is .* must be below 2: take more slots"):
         rival.fit(cases)
     assert rival.rate * rival.overlap > 2
     assert len(rival.history) >= 2 and rival.history[-1] > 1000 * rival.history[0]

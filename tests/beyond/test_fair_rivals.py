@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import expm
 
 from beyond.studies.loop import fair_rivals as study
-from beyond.studies.loop.run_time_parts import rounded
+from beyond.studies.loop.feedforwards import rounded
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II, end_point_error, with_load
 from ddlib.effects import CoulombFriction, Effects, Saturation, ViscousFriction
@@ -23,7 +23,7 @@ def by_ddlib(rival, arm):
     plan = Trajectory(*rounded(study._EXTENTS, study._CORNER))
     friction = (
         ViscousFriction(JOINT_DAMPING_VISCOUS),
-        CoulombFriction(JOINT_DAMPING_COULOMB, study._SIGN),
+        CoulombFriction(JOINT_DAMPING_COULOMB, study._TANH_SPEED),
     )
     effects = Effects(friction=friction, actuator=(Saturation(tuple(study.LIMITS)),))
     law = pd(np.multiply(rival.gain, rival.slope), rival.gain)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from beyond.control.adaptive import _PARAMETERS, SlotineLi, Watched
+from beyond.control.adaptive import PARAMETERS, SlotineLi, Watched
 from beyond.control.feedback_error import (
     FeedbackErrorLearning,
     MotionMemory,
@@ -15,7 +15,7 @@ from ddlib.simulation import record
 
 GAIN, SLOPE = 30.0, np.array([8.0, 6.0])
 RATE = np.array([2.0, 0.5, 0.2, 10.0, 4.0])
-NAMES = (*_PARAMETERS[:3], "F_v1", "F_v2")
+NAMES = (*PARAMETERS[:3], "F_v1", "F_v2")
 TEACHER = pd(tuple(GAIN * SLOPE), (GAIN, GAIN))
 
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import cho_factor, cho_solve
 from scipy.spatial.distance import cdist
 
-from beyond.rivals.gaussian import GaussianProcess, _RandomFeatures, _SemiParametric
+from beyond.rivals.gaussian import GaussianProcess, RandomFeatures, SemiParametric
 from beyond.rivals.protocol import Cases
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
 from ddlib.identification import GRAVITY, RIGID
@@ -57,7 +57,7 @@ def test_a_gaussian_process_is_the_closed_form():
 
 @pytest.mark.parametrize("arm", [CMU_DD_ARM_II, REYES_KELLY_ARM])
 def test_known_structure_leaves_nothing_of_clean_torques(arm):
-    rival, x = _SemiParametric((*RIGID, *GRAVITY)).fit(data(noise=0.0, arm=arm)), states(40, 8, 0.9)
+    rival, x = SemiParametric((*RIGID, *GRAVITY)).fit(data(noise=0.0, arm=arm)), states(40, 8, 0.9)
     assert rival.exact and rival.count() == 5
     wanted = arm.inverse_dynamics(*np.moveaxis(x, -1, 0))
     np.testing.assert_allclose(rival.torque(x), wanted, rtol=1e-8, atol=1e-8)
@@ -68,7 +68,7 @@ def test_known_structure_leaves_nothing_of_clean_torques(arm):
 
 def test_many_random_features_are_kernel_ridge_regression():
     cases, x = data(80, noise=0.3), states(30, 5, 0.9)
-    rival = _RandomFeatures("states", 20_000, lengths=(3.0,), seed=1).fit(cases)
+    rival = RandomFeatures("states", 20_000, lengths=(3.0,), seed=1).fit(cases)
     flat = cases.x.reshape(80, -1)
     a, b = ((f - flat.mean(0)) / flat.std(0) for f in (flat, x.reshape(30, -1)))
     for joint in range(2):
@@ -86,7 +86,7 @@ def test_many_random_features_are_kernel_ridge_regression():
 def test_what_makes_no_sense_is_refused():
     for make, message in (
         (lambda: GaussianProcess(subset=1), "subset"),
-        (lambda: _RandomFeatures(lengths=(0.0,)), "lengths"),
+        (lambda: RandomFeatures(lengths=(0.0,)), "lengths"),
         (lambda: GaussianProcess("states", directions=7).fit(data(20)), "directions"),
     ):
         with pytest.raises(ValueError, match=message):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beyond.control.adaptive import Watched
-from beyond.control.guarded import REASONS, _Guarded
+from beyond.control.guarded import REASONS, Guarded
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.simulation import record
@@ -14,7 +14,7 @@ DAMPING = (35.0, 10.0)
 
 
 def driven(kp, extents, **limits):
-    watched = Watched(_Guarded(pd(kp, DAMPING), **limits))
+    watched = Watched(Guarded(pd(kp, DAMPING), **limits))
     return record(ARM, watched, extents, rest=0.1), watched.law.stops
 
 

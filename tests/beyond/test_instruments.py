@@ -35,7 +35,7 @@ def _driven(phase):
         q, v = x[:2], x[2:]
         return [*v, *np.linalg.solve(ARM.mass_matrix(q) + ROTOR, _left(q, v, torque(t)))]
 
-    t = two_link._STEP * np.arange(600)
+    t = two_link.STEP * np.arange(600)
     q = solve_ivp(change, (0, t[-1]), np.zeros(4), t_eval=t, rtol=1e-5, atol=1e-7).y[:2].T
     return q, torque(t)
 
@@ -48,7 +48,7 @@ def noisy(monkeypatch):
     seen = {
         k: (q + 0.002 * rng.standard_normal(q.shape), torque) for k, (q, torque) in made.items()
     }
-    monkeypatch.setattr(two_link, "_recording", lambda run: seen[run])
+    monkeypatch.setattr(two_link, "recorded_run", lambda run: seen[run])
     monkeypatch.setattr(instruments, "_commanded", lambda run: made[run][1])
     return tuple(made)
 
@@ -69,7 +69,7 @@ def test_instruments_find_what_plain_least_squares_loses(noisy):
 
 
 def test_smoothers_find_the_arm_without_noise(monkeypatch):
-    monkeypatch.setattr(two_link, "_recording", _driven)
+    monkeypatch.setattr(two_link, "recorded_run", _driven)
     for both in (False, True):
         found = instruments._butterworth((0, 1, 2), 16.0, both)
         np.testing.assert_allclose(found[:5], PARAMETERS[:5], rtol=0.05)
@@ -77,7 +77,7 @@ def test_smoothers_find_the_arm_without_noise(monkeypatch):
 
 def test_torques_are_currents():
     with np.load(BOOK / "data" / "double-pendulum.npz") as kept:
-        assert set(kept.files) == {run for runs in two_link._RUNS.values() for run in runs}
+        assert set(kept.files) == {run for runs in two_link.RUNS.values() for run in runs}
         for run in kept.files:
             for torque in kept[run][:, 3:5].T:
                 assert len(np.unique(torque)) < 0.1 * len(torque) and np.abs(torque).max() < 2

@@ -5,7 +5,7 @@ import pytest
 import torch
 
 from beyond.rivals.lagrangian import LagrangianNetwork
-from beyond.rivals.protocol import Cases, _NotFitted
+from beyond.rivals.protocol import Cases, NotFitted
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 
 STEP = 0.01
@@ -100,7 +100,7 @@ def test_friction_is_recovered_beside_the_arm():
 def test_what_makes_no_sense_is_refused():
     for make, error, message in (
         (lambda: LagrangianNetwork(gravity="moon"), ValueError, "gravity"),
-        (lambda: LagrangianNetwork().mass_matrix([0.0, 0.0]), _NotFitted, "learnt nothing"),
+        (lambda: LagrangianNetwork().mass_matrix([0.0, 0.0]), NotFitted, "learnt nothing"),
         (lambda: untrained().mass_matrix([0.0]), ValueError, "q must have a last axis of length 2"),
         (
             lambda: untrained(gravity="vector").potential_energy([0.0, 0.0]),

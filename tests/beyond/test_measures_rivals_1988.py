@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from beyond.measures import rivals_1988 as measures
-from beyond.studies.rivals_1988 import _practised_distance
+from beyond.studies.rivals_1988 import practised_distance
 from workshop.report import results
 
 pytestmark = pytest.mark.usefixtures("planted_members")
 
-POSITIONS = measures._KINDS[1]
+POSITIONS = measures.KINDS[1]
 
 
 @pytest.fixture
@@ -21,7 +21,7 @@ def plant(monkeypatch):
 
 
 def test_degrading_is_ten_degrees_away_over_there(plant):
-    errors = 0.1 + 0.02 * _practised_distance()  # 0.3 at ten degrees, 0.1 there
+    errors = 0.1 + 0.02 * practised_distance()  # 0.3 at ten degrees, 0.1 there
     family = {"errors": [errors * k for k in range(1, 6)]}
     plant["rivals-tables"] = {"around": {POSITIONS: {"states": family}}}
     np.testing.assert_allclose(measures.around("states")[1], [0.2, 0.4, 0.6, 0.8, 1.0])

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.signal import lsim
 
-from beyond.control.adaptive import SlotineLi, Watched, _CraigHsuSastry, _ModelReference
+from beyond.control.adaptive import CraigHsuSastry, ModelReference, SlotineLi, Watched
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS
 from ddlib.simulation import record
@@ -35,7 +35,7 @@ def by_scipy(t):
 
 
 def law(estimate, rate=SPEEDS, **options):
-    return _ModelReference(A0, A1, A1 / 2, rate, estimate, **options)
+    return ModelReference(A0, A1, A1 / 2, rate, estimate, **options)
 
 
 def test_the_model_is_the_linear_system_that_scipy_integrates():
@@ -92,7 +92,7 @@ def test_a_dead_zone_stops_learning_and_leakage_forgets():
 
 def test_an_estimated_mass_matrix_stays_invertible_outside_the_reach_of_the_box():
     low, high = (2.6, 0.0, 0.3), (14.0, 4.0, 2.5)
-    watched = Watched(_CraigHsuSastry(
+    watched = Watched(CraigHsuSastry(
         kp=(60.0, 60.0), kd=(16.0, 16.0), weight=(8.0, 8.0), rate=(50.0, 900.0, 50.0),
         estimate=0.7 * TRUTH, low=low, high=high,
     ))  # fmt: skip

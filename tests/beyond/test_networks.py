@@ -5,7 +5,7 @@ import pytest
 import torch
 from scipy.special import expit
 
-from beyond.rivals.networks import BySolver, _adam, _ByAdam, _ByDescent
+from beyond.rivals.networks import ByAdam, ByDescent, BySolver, _adam
 from beyond.rivals.protocol import Cases
 from ddlib.learning import TrainingDiverged, TrainingSet, WindowNetwork, train
 
@@ -26,9 +26,9 @@ def states(n=150, seed=0):
 
 
 RIVALS = [
-    _ByDescent(4, epochs=30, seed=3),
+    ByDescent(4, epochs=30, seed=3),
     BySolver(4, steps=5, seed=3),
-    _ByAdam(4, epochs=30, seed=3),
+    ByAdam(4, epochs=30, seed=3),
 ]
 
 
@@ -49,13 +49,13 @@ def test_torques_are_those_of_the_formula(rival):
     assert rival.count() == sum(x.size for x in numbers) + 4
     products = 4 * 10 + 2 * 10 + 2 * 4
     assert rival.operations() == (products + 2, products + 6 + 2, 6, 6)
-    ends = (-1.0, 1.0) if isinstance(rival, _ByAdam) else (0.0, 1.0)
+    ends = (-1.0, 1.0) if isinstance(rival, ByAdam) else (0.0, 1.0)
     assert rival.model.inputs.target == ends and rival.model.outputs.target == (0.2, 0.8)
 
 
 def test_descent_is_that_of_autograd():
     data = windows()
-    rival = _ByDescent(4, epochs=40, rate=3.0, momentum=0.8, seed=5).fit(data)
+    rival = ByDescent(4, epochs=40, rate=3.0, momentum=0.8, seed=5).fit(data)
     scaled = TrainingSet.from_arrays(data.x, data.torque)
     network = WindowNetwork(5, 4, seed=5)
     train(network, scaled.x, scaled.y, rate=3.0, momentum=0.8, epochs=40, progress=False)
@@ -87,12 +87,9 @@ STILL = Cases(states().x * [[1, 1, 1], [1, 0, 1]], states().torque, "states", 0.
 
 def test_what_makes_no_sense_is_refused():
     for make, message in (
-        *(
-            (lambda kind=kind: kind(0), "hidden must be")
-            for kind in (_ByDescent, BySolver, _ByAdam)
-        ),
-        (lambda: _ByAdam(2, 0), "epochs"),
-        (lambda: _ByDescent(2, 5, momentum=1.0).fit(windows()), "momentum"),
+        *((lambda kind=kind: kind(0), "hidden must be") for kind in (ByDescent, BySolver, ByAdam)),
+        (lambda: ByAdam(2, 0), "epochs"),
+        (lambda: ByDescent(2, 5, momentum=1.0).fit(windows()), "momentum"),
         (lambda: BySolver(2, kind="states").fit(STILL), "x must vary in every position, velocity"),
     ):
         with pytest.raises(ValueError, match=message):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from beyond.control.online import LastLayer, OnlineFeedforward, _OnlineDescent
+from beyond.control.online import LastLayer, OnlineDescent, OnlineFeedforward
 from ddlib.control import pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.identification import RecursiveLeastSquares
@@ -29,7 +29,7 @@ def windows(seed=1, cases=6):
 @pytest.mark.parametrize("part", ["hidden", "output"])
 def test_a_step_of_descent_is_the_gradient_by_differences(part):
     wanted = np.random.default_rng(2).uniform(-20, 20, (6, 2))
-    before = _OnlineDescent(model(1), rate=1.0)
+    before = OnlineDescent(model(1), rate=1.0)
     before.hidden, before.output = before.hidden[0], before.output[0]
 
     def cost(learner):
@@ -108,4 +108,4 @@ def test_desired_windows_are_learnt_with_the_feedback():
 def test_values_out_of_range_are_refused():
     for name, bad in {"width": 4, "teacher": "me", "every": 0}.items():
         with pytest.raises(ValueError, match=name):
-            OnlineFeedforward(_OnlineDescent(model(), 0.1), FEEDBACK, **{"width": 5, name: bad})
+            OnlineFeedforward(OnlineDescent(model(), 0.1), FEEDBACK, **{"width": 5, name: bad})

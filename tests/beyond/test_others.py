@@ -7,7 +7,7 @@ import pytest
 
 from beyond import others
 
-PAGE = (others._FOLDER / "README.md").read_text(encoding="utf-8")
+PAGE = (others.DATA / "README.md").read_text(encoding="utf-8")
 
 
 def test_files_are_as_they_came():
@@ -19,14 +19,14 @@ def test_files_are_as_they_came():
         ("double-pendulum", "",
          "21aeb556cab1a2e6eca9a92172775cc193d83b41b1bac0d592ad590dbbb97fb6"),
     ):  # fmt: skip
-        content = (others._FOLDER / f"{name}.npz").read_bytes()
+        content = (others.DATA / f"{name}.npz").read_bytes()
         assert hashlib.sha256(content).hexdigest() == digest
         assert digest in PAGE and f"LICENSE-{licence or name}" in PAGE
-        assert (others._FOLDER / f"LICENSE-{licence or name}").stat().st_size > 500
+        assert (others.DATA / f"LICENSE-{licence or name}").stat().st_size > 500
 
 
 def test_characters_are_sampled_evenly():
-    found = others._read_characters()
+    found = others.read_characters()
     assert len(found) == 20 and found.length.sum() == len(found.t) == 2913
     begins = np.cumsum(found.length)[:-1]
     steps = np.delete(np.diff(found.t), begins - 1)
@@ -35,7 +35,7 @@ def test_characters_are_sampled_evenly():
 
 def test_what_is_not_there_is_refused():
     for make, message in (
-        (lambda: others._read_characters().of(("e", "B")), r"labels must be some of b, .*, got \["),
+        (lambda: others.read_characters().of(("e", "B")), r"labels must be some of b, .*, got \["),
         *((lambda rate=rate: others.staubli().at(rate), "rate must") for rate in (0, 3000, 300)),
     ):
         with pytest.raises(ValueError, match=message):

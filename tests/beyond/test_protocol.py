@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 import pytest
 
-from beyond.rivals.protocol import Cases, Estimating, Rival, _NotFitted, trial
+from beyond.rivals.protocol import Cases, Estimating, NotFitted, Rival, trial
 from ddlib.dynamics import CMU_DD_ARM_II, Operations
 from ddlib.trajectories import OutsideFamilyWarning, pick_and_place
 
@@ -94,5 +94,5 @@ def test_what_makes_no_sense_is_refused():
     ):
         with pytest.raises(ValueError, match=message):
             make()
-    with pytest.raises(_NotFitted):
+    with pytest.raises(NotFitted):
         Linear().torque(EXACT.x)

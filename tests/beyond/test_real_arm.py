@@ -7,7 +7,7 @@ from beyond.others import staubli
 from beyond.studies import tx40
 from beyond.studies.checks import wired
 from beyond.studies.tx40 import (
-    _BLOCKS,
+    BLOCKS,
     Ridge,
     Windowed,
     identified,
@@ -37,7 +37,7 @@ def test_windows_surround_the_same_moments():
 
 def test_no_window_reaches_from_one_side_to_the_other():
     data, seen, half = Windowed.of(100, 81), np.zeros(820, int), 0.4
-    for block in range(_BLOCKS):
+    for block in range(BLOCKS):
         training, test = data.fold(block)
         seen += test
         assert not (training & test).any() and training.sum() > 400
@@ -83,7 +83,7 @@ def test_decayed_networks_are_at_an_optimum_of_what_is_said():
     data = Windowed.of(100, 5)
     x, y, decay = data.x[:200:4], data.current[:200:4], 1e-2
     start = Weights.random(1, 5, 2, 6, 6)[0]
-    model = tx40._decayed(x, y, start, decay, steps=2000)
+    model = tx40.decayed_network(x, y, start, decay, steps=2000)
     names = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
     scaled, wanted = model.scaled(x), model.outputs.scale(y)
     parts = [getattr(model.weights, n) for n in names]

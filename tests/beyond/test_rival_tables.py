@@ -5,7 +5,7 @@ import pytest
 from scipy.interpolate import RegularGridInterpolator
 
 from beyond.rivals.protocol import Cases
-from beyond.rivals.tables import CellTable, GridTable, _full_table, _Nearest
+from beyond.rivals.tables import CellTable, GridTable, Nearest, full_table
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.trajectories import OutsideFamilyWarning
 
@@ -35,7 +35,7 @@ def test_a_full_table_is_scipys_interpolation_of_the_same_nodes():
     x = states(60, seed=3)
     values = torques(grid).reshape(4, 4, 4, 4, 4, 4, 2)
     scipys = RegularGridInterpolator([edge] * 6, values)(x.reshape(60, 6))
-    np.testing.assert_allclose(_full_table(torques, x, BOX, 3), scipys, rtol=1e-10, atol=1e-10)
+    np.testing.assert_allclose(full_table(torques, x, BOX, 3), scipys, rtol=1e-10, atol=1e-10)
 
 
 def test_a_grid_fitted_to_scattered_cases_is_the_ridge_of_its_hat_functions():
@@ -51,7 +51,7 @@ def test_a_grid_fitted_to_scattered_cases_is_the_ridge_of_its_hat_functions():
 
 def test_nearest_is_brute_force():
     x, asked = states(300), states(40, seed=7) * 0.9
-    rival = _Nearest().fit(cases(x))
+    rival = Nearest().fit(cases(x))
     away = (((asked[:, None] - x) / x.std(0)) ** 2).sum((2, 3))
     np.testing.assert_array_equal(rival.torque(asked), torques(x)[away.argmin(1)])
     assert rival.count() == 300 * 8 + 6
@@ -72,7 +72,7 @@ def test_cells_of_configurations_and_of_motions_hold_the_arm():
     np.testing.assert_allclose(rival.torque(asked), torques(asked), rtol=1e-5, atol=1e-5)
 
 
-@pytest.mark.parametrize("make", [_Nearest, CellTable, GridTable])
+@pytest.mark.parametrize("make", [Nearest, CellTable, GridTable])
 def test_states_outside_the_table_are_refused_by_name_or_taken_to_the_edge(make):
     x = states(300)
     rival = make(limits=BOX).fit(cases(x))
@@ -95,8 +95,8 @@ THREE = Cases(np.zeros((5, 3, 3)), np.zeros((5, 3)), "states", 0.01)
 def test_what_makes_no_sense_is_refused():
     for make, message in (
         (lambda: CellTable(4, "tasks"), "over must be one of"),
-        (lambda: _Nearest(BOX[::-1]), "limits must have least values below"),
-        (lambda: _Nearest(BOX).fit(THREE), r"limits must be of shape \(2, 3, 3\)"),
+        (lambda: Nearest(BOX[::-1]), "limits must have least values below"),
+        (lambda: Nearest(BOX).fit(THREE), r"limits must be of shape \(2, 3, 3\)"),
         (lambda: GridTable().fit(THREE), "at most 2 joints for a multilinear table, got 3"),
     ):
         with pytest.raises(ValueError, match=message):

@@ -5,7 +5,7 @@ import pytest
 from beyond.studies import rivals_1988 as study
 from workshop.report import results
 
-POSITIONS = study._KINDS[1]
+POSITIONS = study.KINDS[1]
 
 
 def rows(name, **wanted):

@@ -6,7 +6,7 @@ import control
 import numpy as np
 import pytest
 
-from beyond.studies.loop import run_time_parts as parts
+from beyond.studies.loop import feedforwards as parts
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II as ARM, Arm
 from ddlib.effects import Effects, ViscousFriction
@@ -19,7 +19,7 @@ WHEELS = Arm("two wheels", 2.0, 0.0, 1.0, (0.4, 0.3))
 
 FRICTION = Effects(friction=(ViscousFriction((3.0, 1.0)),))
 LINEAR = Setup("linear", pd((60.0, 30.0), (4.0, 2.0)), arm=WHEELS, effects=FRICTION)
-T = parts._T
+T = parts.TIMES
 
 
 def driven(torque, plan):
@@ -83,7 +83,7 @@ def test_the_error_along_the_path_and_across_it():
 
 def test_the_impulse_changes_the_momentum_by_the_jump():
     plan = pick_and_place([30.0, 20.0], T)
-    extra = parts._with_impulse(JOINT_DAMPING)(*plan) - parts.exact(JOINT_DAMPING)(*plan)
+    extra = parts.with_impulse(JOINT_DAMPING)(*plan) - parts.exact(JOINT_DAMPING)(*plan)
     at = np.flatnonzero(np.abs(extra).max(-1) > 1e-9)
     assert len(at) == 2 and np.abs(T[at] - [0.0, 3.0]).max() < 0.0021
     for k in at:  # it starts backwards, and is stopped on its way forwards

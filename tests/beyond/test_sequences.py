@@ -6,7 +6,7 @@ import torch
 from scipy.special import expit
 from torch.utils.flop_counter import FlopCounterMode
 
-from beyond.rivals.networks import _Convolution, _Recurrent
+from beyond.rivals.networks import Convolution, Recurrent
 from beyond.rivals.protocol import Cases
 
 
@@ -36,7 +36,7 @@ def arrays(module) -> dict:
 
 def test_convolutions_are_sums_along_the_window():
     data = windows(40)
-    rival = _Convolution(3, epochs=3).fit(data)
+    rival = Convolution(3, epochs=3).fit(data)
     w = arrays(rival.network)
 
     def layer(x, weight, bias):
@@ -58,7 +58,7 @@ def test_convolutions_are_sums_along_the_window():
 
 def test_the_recurrent_unit_is_gated():
     data = windows(40)
-    rival = _Recurrent(4, epochs=3).fit(data)
+    rival = Recurrent(4, epochs=3).fit(data)
     w = {name.removeprefix("recurrent."): x for name, x in arrays(rival.network).items()}
     h = np.zeros((40, 4))
     for x in np.moveaxis(scaled(rival, data.x), -1, 0):
@@ -77,8 +77,8 @@ def test_the_recurrent_unit_is_gated():
 
 def test_what_makes_no_sense_is_refused():
     with pytest.raises(ValueError, match="windows must have 9 samples or more, got 7"):
-        _Convolution(2).fit(windows(20, 7))
+        Convolution(2).fit(windows(20, 7))
     still = windows(20)
     still.x[:, 1] = 0.3
     with pytest.raises(ValueError, match="x and torque must vary in each joint"):
-        _Recurrent(2).fit(still)
+        Recurrent(2).fit(still)

@@ -15,11 +15,13 @@ def motion():
     return np.stack([np.sin(4 * t), 1.3 * np.sin(5.7 * t + 1)], -1)
 
 
-@pytest.mark.parametrize("design", two_link._PUBLISHED)
+@pytest.mark.parametrize("design", two_link.PUBLISHED)
 def test_least_squares_finds_what_made_the_torques(motion, design):
-    parameters = np.array(list(two_link._PUBLISHED[design].values()))
-    rows = two_link._regressor(two_link._states(motion, 7))
-    np.testing.assert_allclose(two_link._solved(rows, rows @ parameters), parameters, atol=1e-9)
+    parameters = np.array(list(two_link.PUBLISHED[design].values()))
+    rows = two_link.regressor(two_link.fitted_states(motion, 7))
+    np.testing.assert_allclose(
+        two_link.parameters_of(rows, rows @ parameters), parameters, atol=1e-9
+    )
 
 
 def test_slopes_are_the_mass_matrix_and_the_weight(motion):

@@ -5,7 +5,7 @@ import pytest
 from traitlets import TraitError
 
 from beyond.chapters.widgets import loop
-from beyond.studies.loop.runs import adaptive as runs
+from beyond.studies.loop import adaptive_laws as runs
 from beyond.studies.page import learner
 from ddlib.dynamics import CMU_DD_ARM_II, with_load
 from ddlib.effects import Effects
@@ -55,8 +55,10 @@ def test_errors_of_many_runs_are_those_of_one_run_alone():
         encoder=JOINT_DAMPING.effects.encoder,
     )
     laws = {"own": runs.make("with friction", JOINT_DAMPING, runs.TRUTH[None])}
-    found, after = runs._trials(laws, runs._drawn(1, learner._MOTIONS, 11)[:2], arm, effects)
-    alone = runs._by_law(found, laws)["own"][:, 0]
+    found, after = runs.run_trials(
+        laws, runs.drawn_extents(1, learner._MOTIONS, 11)[:2], arm, effects
+    )
+    alone = runs.errors_by_law(found, laws)["own"][:, 0]
     np.testing.assert_allclose(errors[friction, rate, :2], alone, rtol=1e-4)
     last = after["own"].estimate[0]
     np.testing.assert_allclose(estimates[friction, rate, 2], last, rtol=1e-4, atol=1e-9)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from beyond.chapters.widgets.rivals import _MEASURED, RivalPicker
-from beyond.studies.lineup import _REFERENCE
-from beyond.studies.rivals import _GRID, _TORQUES
+from beyond.studies.lineup import REFERENCE
+from beyond.studies.rivals import _TORQUES, SQUARE_POINTS
 
 
 @pytest.fixture(scope="module")
@@ -17,9 +17,9 @@ def test_curves_are_those_of_the_place_and_the_rival_on_the_page_too(picker):
     with np.load(_TORQUES) as file:
         names, torque = file["names"].tolist(), file["torque"].astype(float)
     picker.shoulder, picker.elbow, picker.rival = 2, 9, "linear filter"
-    run = 1 * _GRID + 8  # the elbow changes fastest
+    run = 1 * SQUARE_POINTS + 8  # the elbow changes fastest
     for j, joint in enumerate(("shoulder", "elbow")):
-        for line, name in ((_MEASURED,) * 2, (_REFERENCE,) * 2, ("rival", "linear filter")):
+        for line, name in ((_MEASURED,) * 2, (REFERENCE,) * 2, ("rival", "linear filter")):
             wanted = torque[names.index(name), run, :, j]
             np.testing.assert_array_equal(picker.curves[f"{joint}, {line}"], wanted)
     scale = torque[0].reshape(-1, 2).std(0)

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from beyond.control.windowed import (
+    MeasuredWindows,
     PlannedTorque,
     WindowFeedforward,
-    _MeasuredWindows,
-    _poles_inside,
+    poles_inside,
 )
 from ddlib.control import late_poles, pd, plant
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
@@ -54,7 +54,7 @@ def weight(windows):
     return 20 * windows[..., 0] - 30 * windows[..., 2] + 5 * windows[..., 4]
 
 
-@pytest.mark.parametrize("law", [PlannedTorque, _MeasuredWindows])
+@pytest.mark.parametrize("law", [PlannedTorque, MeasuredWindows])
 def test_a_loop_that_cannot_make_the_windows_is_refused(law):
     right, wrong = (WindowFeedforward(weight, 5, every, step=0.01) for every in (5, 4))
     with pytest.raises(ValueError, match=r"0.002 s are 0.008 s.* 0.01 s apart"):
@@ -70,7 +70,7 @@ def test_a_loop_that_cannot_make_the_windows_is_refused(law):
 def test_what_has_been_is_measured_and_what_is_to_come_desired(tap, late):
     """A model that passes on one sample of its window."""
     made = WindowFeedforward(lambda windows: windows[..., tap], 5)
-    law = _MeasuredWindows(made, lambda *_: np.zeros(2)).start(Trajectory(Q, 0 * Q, 0 * Q), 0.002)
+    law = MeasuredWindows(made, lambda *_: np.zeros(2)).start(Trajectory(Q, 0 * Q, 0 * Q), 0.002)
     measured = Q + 0.1 * np.random.default_rng(0).standard_normal(Q.shape)
     passed = np.array([law(k, measured[k], 0 * measured[k]) for k in range(60)])
     if late < 0:
@@ -97,7 +97,7 @@ OTHER_GAINS = np.hstack([np.diag([300.0, 90.0]) - PRESENT[..., 2], np.diag([35.0
 def test_poles_with_a_model_inside_are_those_of_other_gains_or_of_a_late_loop(
     feedback, past, late, gain, delay
 ):
-    inside = np.abs(_poles_inside(JOINTS, feedback, past, 0.002, late=late)).max()
+    inside = np.abs(poles_inside(JOINTS, feedback, past, 0.002, late=late)).max()
     wanted = np.abs(late_poles(JOINTS, gain, 0.002, delay)).max()
     assert inside == pytest.approx(wanted, abs=1e-12)
 

@@ -62,7 +62,7 @@ def test_the_study_is_run_and_read(tmp_path, monkeypatch):
     (copy / "report" / "studies" / "following.py").write_text(source, encoding="utf-8")
     monkeypatch.setitem(code_hash._ROOTS, "workshop", copy)
     monkeypatch.setattr(results, "FOLDER", tmp_path / "results")
-    monkeypatch.setattr(reproduce, "_run", lambda name: run(source)[f"_{name}"]())
+    monkeypatch.setattr(reproduce, "run_study", lambda name: run(source)[f"_{name}"]())
     reproduce.main(["following", "--jobs", "1"])
     following = results.read("following")
     assert following["made by"]["code"] == code_hash.code_hash("following")

@@ -41,7 +41,7 @@ def test_cards_are_few_and_short():
         assert card.deciding and len(card.says.split()) <= 16, card.id
         quoted = " ".join(re.findall("“(.*?)”", card.says)).split()
         assert len(quoted) <= 13, card.id
-        paper = [c for c in card.deciding if c.printed != claims._OWN]
+        paper = [c for c in card.deciding if c.printed != claims.NOT_IN_PAPER]
         assert card.kind == "own" or len(paper) == len(card.deciding), card.id
 
 
@@ -102,7 +102,7 @@ def test_own_findings_are_never_called_reproduced():
     assert len(words) > 100
     assert all(re.match(r"(held|failed|open)\b", word) for word in words)
     assert not re.search(r"Judged:[^.]*reproduced", told)
-    own = next(claim for claim in ALL if claim.printed == claims._OWN)
+    own = next(claim for claim in ALL if claim.printed == claims.NOT_IN_PAPER)
     assert cards.worded(own, "not reproduced, reproduced") == "failed, held"
     assert cards.worded(row("reproduced"), "reproduced") == "reproduced"
 

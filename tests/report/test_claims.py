@@ -9,7 +9,7 @@ from book_pages import CHAPTERS
 
 from workshop.report import results
 from workshop.report.evidence import claims, wall
-from workshop.report.evidence.claims import _LEDGER, SECTIONS, Claim, _MeasureError
+from workshop.report.evidence.claims import LEDGER, SECTIONS, Claim, _MeasureError
 from workshop.report.evidence.verdicts import Measured
 
 ALL = claims.load()
@@ -65,7 +65,7 @@ def test_the_paper_is_covered():
     pages = {chapter.removeprefix("book/") for chapter in CHAPTERS}
     # evidence pages without a lesson of their name
     alone = {"start", "real-two-link-arm", "joints-three-and-four"}
-    assert {claim.chapter for claim in ALL} <= pages | {_LEDGER} | alone
+    assert {claim.chapter for claim in ALL} <= pages | {LEDGER} | alone
 
 
 def test_places_in_the_paper():
@@ -111,7 +111,7 @@ def test_what_we_find_for_a_claim_by_its_id():
     with pytest.raises(ValueError, match=r"id must be of a claim in claims.yml, got 'nowhere'"):
         claims.measured("nowhere")
     with pytest.raises(ValueError, match=r"chapter must have claims in claims.yml, got 'nowhere'"):
-        claims._of_chapter("nowhere")
+        claims.of_chapter("nowhere")
 
 
 def test_bands(finds):
@@ -145,10 +145,10 @@ def test_replicates_decide(finds, monkeypatch):
     ):
         finds(2.0, np.repeat([2.0, 9.0], [good, 100 - good]))
         claim = make()
-        assert (claim.fresh(), claim.sure()) == (fresh, sure)
+        assert (claim.fresh(), claim.verdict_with_share()) == (fresh, sure)
         assert claim.judge() == sure.split(",")[0]
     finds(2.0, np.repeat([2.0, 9.0], [60, 40]))
-    told = make(verdict="undecided").sure()
+    told = make(verdict="undecided").verdict_with_share()
     assert told == "undecided: 60 % reproduced, 40 % not reproduced of draws"
     for good, verdict in ((99, "undecided"), (100, "reproduced"), (0, "not reproduced")):
         finds(2.0, np.repeat([2.0, 9.0], [good, 100 - good]))
@@ -157,7 +157,7 @@ def test_replicates_decide(finds, monkeypatch):
         for draws in ([2.0] * 100, None):  # all agree; without draws one value decides
             finds(2.0, draws)
             assert make(verdict=planted).judge() == "reproduced"
-    assert make().shares() == {} and make().sure() == "reproduced"
+    assert make().shares() == {} and make().verdict_with_share() == "reproduced"
     finds(2.0, np.repeat([2.0, 9.0], [90, 10]))
     assert make().judge() == "reproduced"
     monkeypatch.setattr(results, "_committed", lambda: True)  # nothing stands that is not fresh
@@ -177,7 +177,7 @@ def test_not_testable_may_tell_where_it_would_turn(finds):
     claim = make(verdict="not testable", band={})
     finds(2.0, [2.0, 9.0])
     assert claim.judge() == claim.fresh() == "not testable"
-    assert claim.here() == "text" and wall._bands(claim) == "not judged"
+    assert claim.our_value() == "text" and wall._bands(claim) == "not judged"
     assert claim.shares() == {}
 
 

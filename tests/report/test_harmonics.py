@@ -5,7 +5,7 @@ import numpy as np
 from ddlib.analysis import LAYERS, gains, mean_gradient, savitzky_golay
 from ddlib.learning import Scaler, TorqueModel, Weights
 from ddlib.simulation import LOG_STEP
-from workshop.report.studies._harmonics import _summary
+from workshop.report.studies.harmonics import _summary
 
 STEP, WIDTH = 0.01, 11
 X = STEP * (np.arange(WIDTH) - WIDTH // 2)

@@ -21,7 +21,7 @@ def planted(monkeypatch):
     trained = np.array([[SHAPES[name] for name in each] for each in names])
     before = np.broadcast_to(SHAPES["noise"], trained.shape)
     given = {"hidden": [trained, before], "direct": [before[:, :1], before[:, :1]]}
-    monkeypatch.setattr(committed, "_filters", lambda width, layer, setup: given[layer])
+    monkeypatch.setattr(committed, "filters_of_layer", lambda width, layer, setup: given[layer])
 
 
 def test_a_network_counts_if_one_filter_has_the_name(planted):

@@ -14,7 +14,7 @@ SMALL = replace(study.TRIAL, epochs=40, warm_up=10, hidden=3)
 
 @pytest.fixture(scope="module")
 def trial():
-    return study._Trial(SMALL, SMALL.record(), 7)
+    return study.FilterTrial(SMALL, SMALL.record(), 7)
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +53,7 @@ def test_replaced_by_themselves_filters_change_nothing(trial, trained):
 
 def test_the_solver_takes_the_place_of_descent():
     setup = replace(study.JOINT_DAMPING, steps=2, hidden=2)
-    trial = study._Trial(setup, setup.record(), 5)
+    trial = study.FilterTrial(setup, setup.record(), 5)
     targets = np.stack([trial.torques, *surrogates("phases", trial.torques, 1)])
     with pytest.warns(NotConverged):
         weights, start = trial.train(targets, 0)

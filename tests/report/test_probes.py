@@ -7,7 +7,7 @@ from scipy.stats import ortho_group
 
 from ddlib.learning import TorqueModel, TrainingSet, Weights
 from ddlib.simulation import LOG_STEP
-from workshop.report._probes import cancellation, decoded, decoded_sign, pure_part, with_jerk
+from workshop.report.probes import cancellation, decoded, decoded_sign, pure_part, with_jerk
 
 RNG = np.random.default_rng(0)
 

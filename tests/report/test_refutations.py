@@ -40,7 +40,7 @@ def test_outcomes_are_edges_on_the_side_that_the_verdict_excludes():
 
 def test_words_stand_for_the_bound():
     """For the bound, or for the quotient the other way round, or for what is more or less of 1."""
-    entries = yaml.safe_load(claims._FILE.read_text(encoding="utf-8"))
+    entries = yaml.safe_load(claims.CLAIMS_FILE.read_text(encoding="utf-8"))
     told = [
         e["refuted"] for e in entries if isinstance(e["refuted"], dict) and "as" in e["refuted"]
     ]

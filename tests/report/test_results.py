@@ -79,7 +79,7 @@ def parts(tmp_path, monkeypatch):
     ran.studies = {n: lambda n=n: ran.append(n) or {"value": len(ran)} for n in ran.codes}
     monkeypatch.setattr(results, "FOLDER", tmp_path / "results")
     monkeypatch.setattr(reproduce, "places", lambda: dict.fromkeys(ran.codes, ("module", "name")))
-    monkeypatch.setattr(reproduce, "_run", lambda name: ran.studies[name]())
+    monkeypatch.setattr(reproduce, "run_study", lambda name: ran.studies[name]())
     monkeypatch.setattr(reproduce, "code_hash", lambda name: ran.codes[name])
     monkeypatch.setattr(reproduce, "_picture", lambda: None)
     return ran

@@ -7,7 +7,7 @@ from ddlib import paper
 from ddlib.learning import NotConverged
 from workshop.report import results
 from workshop.report.exact_states import SAMPLES
-from workshop.report.studies import _states as study
+from workshop.report.studies import states as study
 
 
 @pytest.fixture(scope="module")

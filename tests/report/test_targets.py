@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from ddlib.learning import related
-from workshop.report.studies import _targets as study
-from workshop.report.studies.nulls import TRIAL, _Trial
+from workshop.report.studies import targets as study
+from workshop.report.studies.nulls import TRIAL, FilterTrial
 
 
 @pytest.fixture(scope="module")
 def made():
     setup = replace(TRIAL, hidden=3, epochs=20)
-    return study._Targets(_Trial(setup, setup.record(), 11), 2)
+    return study._Targets(FilterTrial(setup, setup.record(), 11), 2)
 
 
 def test_what_the_windows_contain_they_explain(made):

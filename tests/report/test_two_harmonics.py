@@ -11,9 +11,9 @@ from ddlib.trajectories import APPENDIX_I, pick_and_place, time_grid
 from workshop.report.two_harmonics import (
     NEUTRAL,
     ORDER,
-    _record_circle,
-    _record_quintic,
     _two_harmonics,
+    record_circle,
+    record_quintic,
     record_two_harmonics,
 )
 
@@ -68,7 +68,7 @@ def test_what_position_explains_of_acceleration(recordings):
     assert max(share["two sines"]) < 0.25
 
 
-@pytest.mark.parametrize("record", [_record_quintic, _record_circle])
+@pytest.mark.parametrize("record", [record_quintic, record_circle])
 def test_single_motions_tell_position_from_acceleration(record):
     recording = record(STATE_FEEDBACK)
     states = true_states(recording, STATE_FEEDBACK)
@@ -79,7 +79,7 @@ def test_single_motions_tell_position_from_acceleration(record):
 
 
 def test_quintic_rests_at_both_ends_and_in_the_middle():
-    reference = _record_quintic(STATE_FEEDBACK, -30.0).reference
+    reference = record_quintic(STATE_FEEDBACK, -30.0).reference
     middle = reference.q[..., 0].argmin()
     assert np.rad2deg(reference.q[middle]) == pytest.approx([-30, -18])
     for k in (0, middle, -1):
@@ -89,7 +89,7 @@ def test_quintic_rests_at_both_ends_and_in_the_middle():
 
 
 def test_the_hand_goes_round_a_circle():
-    recording = _record_circle(STATE_FEEDBACK, radius=0.02, turns=3)
+    recording = record_circle(STATE_FEEDBACK, radius=0.02, turns=3)
     hand = STATE_FEEDBACK.arm.forward_kinematics(recording.reference.q)[:, -1]
     centre = STATE_FEEDBACK.arm.forward_kinematics(np.array(NEUTRAL))[-1]
     assert np.linalg.norm(hand - centre, axis=-1) == pytest.approx(0.02)

@@ -10,12 +10,12 @@ from workshop.report.evidence.verdicts import (
     DRAWS,
     FEWEST,
     STANDS,
-    _fresh,
-    _stands,
     bootstrap,
     mean,
+    not_contradicted,
     share_told,
     turns_at,
+    verdict_of_shares,
 )
 
 
@@ -81,12 +81,12 @@ def test_what_a_written_verdict_bears():
         ("undecided", _CONTRADICTS, False),
         ("not reproduced", 0.3, False),  # a planted one
     ):
-        assert _stands(written, {"reproduced": share, "qualitative": 1 - share}) is holds
+        assert not_contradicted(written, {"reproduced": share, "qualitative": 1 - share}) is holds
     for share in np.linspace(0, 1, 201):
         found = {"reproduced": share, "not reproduced": 1 - share}
-        assert _stands(_fresh(found), found)
+        assert not_contradicted(verdict_of_shares(found), found)
     with pytest.raises(ValueError, match="written must be one of"):
-        _stands("fine", {"reproduced": 1.0})
+        not_contradicted("fine", {"reproduced": 1.0})
 
 
 def test_where_a_share_reaches_a_level():

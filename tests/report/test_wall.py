@@ -8,7 +8,7 @@ import pytest
 
 from ddlib.tables import typeset
 from workshop.report.evidence import cards, claims, expressions, wall
-from workshop.report.evidence.claims import _LEDGER, Claim, _Printed
+from workshop.report.evidence.claims import LEDGER, Claim, Printed
 from workshop.report.evidence.verdicts import Measured
 
 ALL = claims.load()
@@ -38,7 +38,7 @@ def tiles(text) -> list[str]:
 def code_of(claim) -> str:
     if not claim.measure:
         return f"{expressions.__name__.replace('.', '/')}.html#find"
-    function = claims._function(claim.measure)
+    function = claims.measuring_function(claim.measure)
     return f"{function.__module__.replace('.', '/')}.html#{claim.measure.split('.')[-1]}"
 
 
@@ -50,9 +50,9 @@ def test_a_tile_for_each_claim_with_all_that_the_file_says():
         assert html.escape(typeset(claim.claim), quote=False) in head
         assert f"<b>{cards.worded(claim, claim.judge())}</b>" in head
         assert typeset(claim.why) in inside and typeset(claim.refuted) in inside
-        own = claim.printed == claims._OWN
+        own = claim.printed == claims.NOT_IN_PAPER
         assert ("This book's own claim" if own else typeset(claim.as_printed())) in inside
-        page = [] if claim.chapter == _LEDGER else [wall._BEHIND.get(claim.chapter, claim.chapter)]
+        page = [] if claim.chapter == LEDGER else [wall._BEHIND.get(claim.chapter, claim.chapter)]
         found = re.findall(r"\]\((?:evidence/)?([\w-]+)\.ipynb\)", inside)
         assert found == page
         code = f'<a href="../_modules/{code_of(claim)}">code</a>'
@@ -63,7 +63,7 @@ def test_a_tile_for_each_claim_with_all_that_the_file_says():
 
 def test_the_picture_of_the_draws(make):
     draws = np.linspace(0.2, 0.4, 2001)
-    text = wall._draws(make({"from": 0.1, "to": 0.5}, draws, _Printed("0.30")))
+    text = wall._draws(make({"from": 0.1, "to": 0.5}, draws, Printed("0.30")))
     parts = re.findall(r'<i class="(\w+)" style="left:([\d.]+)%(?:;width:([\d.]+)%)?">', text)
     found = {name: (float(left), float(wide or 0)) for name, left, wide in parts}
     assert found["median"][0] == pytest.approx(50, abs=0.1)
@@ -72,7 +72,7 @@ def test_the_picture_of_the_draws(make):
     assert found["draws"][1] == pytest.approx(scale * 0.95 * 0.2, abs=0.2)
     assert found["band"][0] == pytest.approx(100 - sum(found["band"]), abs=0.2)
     assert "from 0.205 to 0.395, median 0.300; reproduced from 0.100 to 0.500; printed 0.30" in text
-    factor = make({"factor": 2}, np.linspace(9.0, 11.0, 50), _Printed("10"))
+    factor = make({"factor": 2}, np.linspace(9.0, 11.0, 50), Printed("10"))
     assert "reproduced from 5.00 to 20.0" in wall._draws(factor)
 
 

@@ -14,7 +14,7 @@ from ddlib import paper
 from ddlib.setups import WINDOWS
 from workshop.report import results
 from workshop.report.evidence import claims
-from workshop.report.studies._windows import _SIZES
+from workshop.report.studies.windows import _SIZES
 
 # Words near which a number may be a result.
 RESULT_WORDS = re.compile(

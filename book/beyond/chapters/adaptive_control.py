@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
 from beyond.studies.loop import fair_rivals
-from beyond.studies.loop.runs.adaptive import _FULL
+from beyond.studies.loop.adaptive_laws import WITH_FRICTION
 from ddlib.figures import (
     COLOUR_MAP,
     COLOURS,
@@ -33,11 +33,11 @@ _PLAIN = FuncFormatter(lambda value, place: f"{value:g}")
 
 
 def _courses(
-    panels: dict[str, dict[str, np.ndarray]], change: int, told: str, label: str, alt: str
+    panels: dict[str, dict[str, np.ndarray]], change: int, event: str, label: str, alt: str
 ) -> Illustration:
     """Errors ``{title: {controller: (motions, runs)}}``: medians, and the middle half of all runs.
 
-    After the motion `change` something happens, as `told`.
+    After the motion `change` something happens, the `event`.
     """
 
     def draw(figure: Figure):
@@ -54,7 +54,7 @@ def _courses(
             axis.set(title=title, yscale="log", xticks=x)
             axis.axvline(change + 0.5, color=INK, lw=0.8)
             axis.text(
-                change + 0.6, 0.02, told, ha="left", va="bottom", fontsize=8,
+                change + 0.6, 0.02, event, ha="left", va="bottom", fontsize=8,
                 transform=axis.get_xaxis_transform(),
             )  # fmt: skip
             axis.set_xlabel("motion, number")
@@ -97,10 +97,10 @@ def _stops_map(x, y, panels: dict[str, tuple], labels: tuple[str, ...], alt: str
 
 def kept(*path) -> np.ndarray | dict:
     """A part of the result; among its numbers, runs that were stopped are infinite."""
-    found = results.read("adaptive")
+    part = results.read("adaptive")
     for key in path:
-        found = found[key]
-    return found if isinstance(found, dict) else _finite(found)
+        part = part[key]
+    return part if isinstance(part, dict) else _finite(part)
 
 
 def _finite(numbers) -> np.ndarray:
@@ -139,7 +139,7 @@ def bent(effect: str) -> Measured:
     return judged(
         lambda x: np.abs(np.median(x, axis=1)).max(-1),
         _added(effect),
-        text=f"{100 * off[k]:+.0f} % of {_told(_FULL[k])}",
+        text=f"{100 * off[k]:+.0f} % of {_told(WITH_FRICTION[k])}",
     )
 
 
@@ -159,13 +159,13 @@ def _quoted() -> None:
     for tail, setup in _SETUPS.items():
         for law, key in (("PD", "pd"), ("computed torque", "ct"), ("with friction", "sl")):
             for seconds, plan in (("0", "jump"), ("0.1", "tenth"), ("0.2", "fifth")):
-                found = np.median(_again(seconds, setup, law), -1)
-                quote(f"adaptive-{key}-{tail}-{plan}", found[3])
-                quote(f"adaptive-{key}-{tail}-{plan}-load", found[7])
-    found, coarse = _fair(), _fair(12.5)
+                errors = np.median(_again(seconds, setup, law), -1)
+                quote(f"adaptive-{key}-{tail}-{plan}", errors[3])
+                quote(f"adaptive-{key}-{tail}-{plan}-load", errors[7])
+    errors, coarse = _fair(), _fair(12.5)
     for name, key in _FAIR.items():
         for k, when in ((0, "first"), (3, "empty"), (4, "load-first"), (7, "load")):
-            quote(f"fair-{key}-{when}", found[name][k])
+            quote(f"fair-{key}-{when}", errors[name][k])
         quote(f"fair-{key}-margin", 1e3 * fair_rivals.delay_margin(fair_rivals.RIVALS[name]))
         quote(f"fair-{key}-encoder", coarse[name][3])
     excited = {n: np.array(x, float) for n, x in kept("excitation", "settled").items()}
@@ -189,10 +189,10 @@ def _said() -> None:
     )  # fmt: skip
     stated("adaptive-few", max(*few, *slow) < 0.06)
     stated("adaptive-heavy", min(heavy) > 2 * max(slow))
-    found = _fair()
-    held, watched, learnt = (found[n] for n in list(_FAIR)[3:6])
+    errors = _fair()
+    held, watched, learnt = (errors[n] for n in list(_FAIR)[3:6])
     stated("adaptive-held-empty", held[3] < 0.6 * learnt[3])
-    stated("adaptive-wrong-empty", found["all of them 10 % too large"][3] > 1.5 * learnt[3])
+    stated("adaptive-wrong-empty", errors["all of them 10 % too large"][3] > 1.5 * learnt[3])
     stated("adaptive-pays", learnt[7] < 0.3 * watched[7] and learnt[7] < 0.1 * held[7])
     stated("adaptive-observer-at-once", watched[4] < 0.5 * learnt[4])
     excited = {n: np.array(x, float) for n, x in kept("excitation", "settled").items()}
@@ -206,12 +206,12 @@ def _rounded_figure() -> Illustration:
         title: {name: _again(seconds, JOINT_DAMPING.name, law) for law, name in _LINES.items()}
         for seconds, title in titles.items()
     }
-    told = "; ".join(
+    medians = "; ".join(
         f"{title}: " + ", ".join(f"{n} {np.median(x[3]):.1f}, {np.median(x[7]):.1f}"
                                  for n, x in rows.items())
         for title, rows in panels.items()
     )  # fmt: skip
-    alt = f"Errors over eight motions, three plans. In the fourth and the last, mm: {told}."
+    alt = f"Errors over eight motions, three plans. In the fourth and the last, mm: {medians}."
     return _courses(panels, 4, "5 kg", "end-point error, mm", alt)
 
 
@@ -235,28 +235,29 @@ def _fair(bits: float | None = None, filtered: float = 0.0) -> dict[str, np.ndar
 
 def _fair_figure() -> Illustration:
     """A row for each rival: its first and its last error with an empty hand, and with a load."""
-    found, last = _fair(), fair_rivals.TRIALS - 1
+    errors, last = _fair(), fair_rivals.TRIALS - 1
     pairs = (("empty hand", 0, last, "o"), ("5 kg in the hand", last + 1, 2 * last + 1, "D"))
 
     def draw(figure: Figure):
-        axis, rows = figure.subplots(), np.arange(len(found))[::-1]
+        axis, rows = figure.subplots(), np.arange(len(errors))[::-1]
         for k, (_, first, final, mark) in enumerate(pairs):
-            ends = np.array([[e[first], e[final]] for e in found.values()])
+            ends = np.array([[e[first], e[final]] for e in errors.values()])
             height, look = rows + (0.16, -0.16)[k], {"color": COLOURS[k], "ls": "", "ms": 6}
             axis.hlines(height, *ends.T, color=COLOURS[k], lw=1.2)
             axis.plot(ends[:, 0], height, mark, mfc="none", **look)
             axis.plot(ends[:, 1], height, mark, **look)
-        axis.set(xscale="log", ylim=(-0.6, len(found) - 0.4))
-        axis.set_yticks(rows, list(found))
+        axis.set(xscale="log", ylim=(-0.6, len(errors) - 0.4))
+        axis.set_yticks(rows, list(errors))
         axis.set_xlabel(check_label("end-point error, mm"))
         axis.xaxis.set_major_formatter(_PLAIN)
-        names = [f"{told}, {when}" for told, *_ in pairs for when in ("1st motion", "4th motion")]
+        names = [f"{load}, {when}" for load, *_ in pairs for when in ("1st motion", "4th motion")]
         legend_above(figure, axis.lines, names)
 
-    told = "; ".join(
-        f"{name} {e[last]:.2g}, then {e[last + 1]:.2g} and {e[-1]:.2g}" for name, e in found.items()
+    medians = "; ".join(
+        f"{name} {e[last]:.2g}, then {e[last + 1]:.2g} and {e[-1]:.2g}"
+        for name, e in errors.items()
     )
-    alt = f"Errors in the fourth motion, then in the first and fourth with 5 kg, mm: {told}."
+    alt = f"Errors in the fourth motion, then in the first and fourth with 5 kg, mm: {medians}."
     return illustrate(draw, alt, 7.0, 3.6)
 
 
@@ -266,7 +267,7 @@ def fair_table() -> Table:
     rows = []
     for name, rival in fair_rivals.RIVALS.items():
         errors = [significant(float(sensors[0][name][k]), 2) for k in (0, 3, 4, 7)]
-        others = [significant(float(found[name][3]), 2) for found in sensors[1:]]
+        others = [significant(float(by_rival[name][3]), 2) for by_rival in sensors[1:]]
         rows.append((name, f"{1e3 * fair_rivals.delay_margin(rival):.0f}", *errors, *others))
     heads = ("delay margin, ms", "1st", "4th", "5 kg: 1st", "5 kg: 4th")
     heads += ("16 bits alone", "12.5 bits alone", "12.5 bits, filtered")
@@ -290,8 +291,8 @@ def _exercise(number: int, given=None) -> Exercise:
             (-falls, "the sign: does V grow?"),
             (-gains @ np.abs(s), "K multiplies the squares of s."),
         ]
-        told = "wrong estimates do not come in; they are paid for by the update."
-        return Exercise("number", falls, told, slips, "All terms but one cancel.", unit="W")
+        reason = "wrong estimates do not come in; they are paid for by the update."
+        return Exercise("number", falls, reason, slips, "All terms but one cancel.", unit="W")
     elif number == 2:
         slips = [(other, "which torques does that one act on?") for other in ("b", "d")]
         otherwise = "one of the letters a, b, d."

@@ -109,8 +109,8 @@ def _read(part: str):
 def _row(part: str, **wanted) -> dict:
     """The one row of a part whose entries have these values."""
     rows = [r for r in _read(part) if all(r[key] == value for key, value in wanted.items())]
-    (found,) = rows
-    return found
+    (row,) = rows
+    return row
 
 
 def errors(joints: int, motions: int, what: str = "test", reading: str = _DAMPED) -> np.ndarray:
@@ -146,16 +146,16 @@ def _crossing(motions, level) -> Callable:
 
     def crossing(*cells):
         y = np.log(np.stack([median(c) for c in cells])) - np.log(level)
-        late = np.full(y.shape[1], np.inf)
+        crossed = np.full(y.shape[1], np.inf)
         for k in range(y.shape[1]):
             above = np.flatnonzero(y[:, k] > 0)
             last = above.max() if above.size else -1
             if last < 0:
-                late[k] = motions[0]
+                crossed[k] = motions[0]
             elif last + 1 < len(x):
                 share = y[last, k] / (y[last, k] - y[last + 1, k])
-                late[k] = np.exp(x[last] + share * (x[last + 1] - x[last]))
-        return late
+                crossed[k] = np.exp(x[last] + share * (x[last + 1] - x[last]))
+        return crossed
 
     return crossing
 
@@ -227,8 +227,8 @@ def four_joints_table() -> Table:
     ]
     others = results.read("loop-conditions")["windows"]
     for windows in (750, 300):
-        found = spread(others[f"{windows} of twenty"])
-        rows.append((f"twenty motions, {windows} windows, other draws", found, ""))
+        cell = spread(others[f"{windows} of twenty"])
+        rows.append((f"twenty motions, {windows} windows, other draws", cell, ""))
     return Table(("four joints, error in the test", "all joints", "joints 3 and 4"), rows)
 
 
@@ -299,8 +299,8 @@ def _answer_figure() -> Illustration:
         plain_ticks(left.yaxis)
         legend_above(figure, *left.get_legend_handles_labels())
 
-    told = ", ".join(f"{name} {np.median(each):.2f}" for name, each in _draws().items())
-    alt = f"Errors of networks fall with the number of motions. Four joints, medians: {told}."
+    medians = ", ".join(f"{name} {np.median(each):.2f}" for name, each in _draws().items())
+    alt = f"Errors of networks fall with the number of motions. Four joints, medians: {medians}."
     return illustrate(draw, alt, 7.2, 2.8)
 
 

@@ -117,18 +117,20 @@ def _first_figure() -> Illustration:
         right.grid(visible=False, axis="y")
         legend_above(figure, *left.get_legend_handles_labels())
 
-    told = "; ".join(
+    medians = "; ".join(
         f"{m}: " + ", ".join(f"{n} {np.median(on(m, n) / on(m, PLAIN)):.2g}" for n in _ONE_MOTION)
         for m in motions
     )
-    alt = f"Errors over ten trials of one motion; then medians over the feedback's alone, {told}."
+    alt = (
+        f"Errors over ten trials of one motion; then medians over the feedback's alone, {medians}."
+    )
     return illustrate(draw, alt, 7.2, 3.1)
 
 
 def _course_figure() -> Illustration:
     """Errors on fixed members of the family, trial by trial, with a load from half-way on."""
-    kept = results.read("learning-in-the-loop")
-    x, number = np.arange(2 * kept["trials"] + 1), kept["trials"]
+    study = results.read("learning-in-the-loop")
+    x, number = np.arange(2 * study["trials"] + 1), study["trials"]
 
     def course(name):
         return x, np.array([*part("family")["tests"][name], part("family")["at the end"][name]])
@@ -140,15 +142,15 @@ def _course_figure() -> Illustration:
             ("from networks trained off-line", _TRAINED),
         )
     }
-    told = ", ".join(f"{n} {np.median(family(n, _WHEN[0])):.1f}" for n in _NOTHING)
+    medians = ", ".join(f"{n} {np.median(family(n, _WHEN[0])):.1f}" for n in _NOTHING)
     later = ", ".join(f"{n} {np.median(family(k, _WHEN[2])):.1f}" for n, k in _TRAINED.items())
     alt = (
         "Two panels of end-point error over trials on a logarithmic axis, with the load "
-        f"from half-way on. Medians after {number} trials from nothing, mm: {told}. At the "
+        f"from half-way on. Medians after {number} trials from nothing, mm: {medians}. At the "
         f"end, from networks trained off-line: {later}."
     )
     labels = "trials practised", "end-point error, mm"
-    return _by_trial(panels, labels, alt, change=(number, f"{kept['load']:.0f} kg in the hand"))
+    return _by_trial(panels, labels, alt, change=(number, f"{study['load']:.0f} kg in the hand"))
 
 
 def _rates_figure() -> Illustration:
@@ -156,17 +158,17 @@ def _rates_figure() -> Illustration:
     rates = np.array(results.read("learning-in-the-loop")["rates"])
     panels = {}
     for setup in ("joint damping", "state feedback"):
-        alone, found = on("the same", PLAIN, setup), part("rates", setup)
+        alone, by_learner = on("the same", PLAIN, setup), part("rates", setup)
         panels[setup] = {PLAIN: (rates, np.tile(alone, (len(rates), 1)))} | {
-            name.partition(",")[0]: (rates, np.array(x["error"])) for name, x in found.items()
+            name.partition(",")[0]: (rates, np.array(x["error"])) for name, x in by_learner.items()
         }
-    told = "; ".join(
+    medians = "; ".join(
         f"{s}: " + ", ".join(f"{n} {np.median(y[-1]):.2g}" for n, (_, y) in p.items())
         for s, p in panels.items()
     )
     alt = (
         "Two panels of error over the rate, both logarithmic. Medians in mm at the largest "
-        f"rate, {told}."
+        f"rate, {medians}."
     )
     labels = "multiple of the rate chosen", "end-point error, mm"
     return _by_trial(panels, labels, alt, x_log=True)
@@ -216,8 +218,10 @@ def _converges_figure() -> Illustration:
             axis.set_major_formatter(_PLAIN)
         legend_above(figure, *over.get_legend_handles_labels())
 
-    told = "; ".join(f"{n} {y.min():.2g} at best, {y[-1]:.2g} at last" for n, y in left.items())
-    alt = f"Factor of a trial over frequency, and the missing torque over 100 trials, N m: {told}."
+    factors = "; ".join(f"{n} {y.min():.2g} at best, {y[-1]:.2g} at last" for n, y in left.items())
+    alt = (
+        f"Factor of a trial over frequency, and the missing torque over 100 trials, N m: {factors}."
+    )
     return illustrate(draw, alt, 7.2, 2.9)
 
 
@@ -253,10 +257,10 @@ def on(
 
 def family(learner: str, when: str, setup: str = "joint damping") -> np.ndarray:
     """End-point errors on the family's test motions, one for each seed."""
-    found, trials = part("family", setup), results.read("learning-in-the-loop")["trials"]
+    errors, trials = part("family", setup), results.read("learning-in-the-loop")["trials"]
     if when in ("at the end", "without the load again"):
-        return np.array(found[when][learner])
-    return np.array(found["tests"][learner])[trials if when == "with the load" else trials - 1]
+        return np.array(errors[when][learner])
+    return np.array(errors["tests"][learner])[trials if when == "with the load" else trials - 1]
 
 
 def _trials_to_half(errors, start) -> np.ndarray:
@@ -269,13 +273,13 @@ def _trials_to_half(errors, start) -> np.ndarray:
 def halved(learner: str, loaded: bool = False, setup: str = "joint damping") -> Measured:
     """Trials of the family to half the error of the feedback alone, or of the first loaded one."""
     number = results.read("learning-in-the-loop")["trials"]
-    found = part("family", setup)
-    errors = np.array(found["tests"][learner])
+    of_family = part("family", setup)
+    errors = np.array(of_family["tests"][learner])
     if loaded:
-        errors = np.concatenate([errors[number:], [found["at the end"][learner]]])
+        errors = np.concatenate([errors[number:], [of_family["at the end"][learner]]])
         start = errors[0]
     else:
-        errors, start = errors[:number], np.array(found["tests"][PLAIN])[0]
+        errors, start = errors[:number], np.array(of_family["tests"][PLAIN])[0]
     counts = _trials_to_half(errors, start)
     got = np.isfinite(counts).sum()
     text = f"{spread(counts)}, {got} of {counts.size} seeds" if got else "no seed"
@@ -378,23 +382,25 @@ def _exercise(number: int, *given) -> Exercise:
         size = gamma * np.sqrt(k * M) / F
         wrong = "G is imaginary there: what is the size of 1 - γ G?"
         slips = [(1 - size, wrong), (1 + size, wrong), (1 + size**2, "that is the square.")]
-        told = "above 1, whatever the rate: the resonance grows from trial to trial."
-        return Exercise("number", np.sqrt(1 + size**2), told, slips, "Put ω² = k / M into G.")
+        reason = "above 1, whatever the rate: the resonance grows from trial to trial."
+        return Exercise("number", np.sqrt(1 + size**2), reason, slips, "Put ω² = k / M into G.")
     elif number == 2:
         (quick,) = given
 
         def right(rate):
             return all(third < alone / 30 for alone, third in quick(float(rate)))
 
-        told = "all three motions are learnt in two trials."
+        reason = "all three motions are learnt in two trials."
         return Exercise(
-            "number", right, told, [], "some motion has more than a thirtieth left. Try another."
+            "number", right, reason, [], "some motion has more than a thirtieth left. Try another."
         )
     else:
-        (found,) = given
+        (torque,) = given
         slips = [(1, "it plays something."), (0, "it plays the old torque, with the old sign.")]
-        told = f"found {found:.2f}. What was missing is missing twice."
-        return Exercise("number", found, told, slips, "What is missing, and what is played?", 0.15)
+        reason = f"found {torque:.2f}. What was missing is missing twice."
+        return Exercise(
+            "number", torque, reason, slips, "What is missing, and what is played?", 0.15
+        )
 
 
 check = judging(_exercise)

@@ -51,28 +51,28 @@ def _memory() -> dict[str, np.ndarray]:
 
 def _remembered(x) -> np.ndarray:
     """Torque of ANYmal's network after each sample of histories, shape (cases, samples)."""
-    kept = _memory()
-    h, c, told = np.zeros((2, len(x), 8)), np.zeros((2, len(x), 8)), []
-    for z in np.moveaxis(x * kept["in_scale"], 1, 0):
+    weights = _memory()
+    h, c, torques = np.zeros((2, len(x), 8)), np.zeros((2, len(x), 8)), []
+    for z in np.moveaxis(x * weights["in_scale"], 1, 0):
         for k in (0, 1):
-            s = z @ kept[f"lstm_weight_ih_l{k}"].T + kept[f"lstm_bias_ih_l{k}"]
-            s += h[k] @ kept[f"lstm_weight_hh_l{k}"].T + kept[f"lstm_bias_hh_l{k}"]
+            s = z @ weights[f"lstm_weight_ih_l{k}"].T + weights[f"lstm_bias_ih_l{k}"]
+            s += h[k] @ weights[f"lstm_weight_hh_l{k}"].T + weights[f"lstm_bias_hh_l{k}"]
             i, f, new, o = np.split(s, 4, axis=-1)
             c[k] = _squashed(f) * c[k] + _squashed(i) * np.tanh(new)
             z = h[k] = _squashed(o) * np.tanh(c[k])
-        told.append(z @ kept["linear_weight"][0] + kept["linear_bias"][0])
-    return np.stack(told, axis=1) * kept["out_scale"][0]
+        torques.append(z @ weights["linear_weight"][0] + weights["linear_bias"][0])
+    return np.stack(torques, axis=1) * weights["out_scale"][0]
 
 
 def _answers(size, frequency, speed=0.0, cases=100) -> np.ndarray:
     """Gradient of the last torque by age of error and velocity, shape (cases, 2, samples)."""
     error, velocity = _sines(size, frequency, 2 * _REACH, cases, speed)
     history = torch.tensor(np.stack([error, velocity], -1)[:, ::-1].copy(), requires_grad=True)
-    kept = {name: torch.tensor(value).double() for name, value in _memory().items()}
+    weights = {name: torch.tensor(value).double() for name, value in _memory().items()}
     lstm = torch.nn.LSTM(2, 8, 2, batch_first=True).double()
-    lstm.load_state_dict({name: kept[f"lstm_{name}"] for name in lstm.state_dict()})
-    heard = lstm(history * kept["in_scale"])[0][:, -1]
-    torque = heard @ kept["linear_weight"][0] * kept["out_scale"][0]
+    lstm.load_state_dict({name: weights[f"lstm_{name}"] for name in lstm.state_dict()})
+    output = lstm(history * weights["in_scale"])[0][:, -1]
+    torque = output @ weights["linear_weight"][0] * weights["out_scale"][0]
     (slopes,) = torch.autograd.grad(torque.sum(), history)
     return np.moveaxis(slopes.numpy()[:, ::-1][:, :_REACH], 1, 2)
 
@@ -82,8 +82,8 @@ def _moments(g) -> np.ndarray:
     g = np.asarray(g, dtype=float)
     position, velocity = np.split(g, 2, axis=-1)
     stiffness = position.sum(-1)
-    late = position @ (1e3 * STEP * np.arange(position.shape[-1])) / stiffness
-    return np.stack([stiffness, late, velocity.sum(-1)], axis=-1)
+    delay = position @ (1e3 * STEP * np.arange(position.shape[-1])) / stiffness
+    return np.stack([stiffness, delay, velocity.sum(-1)], axis=-1)
 
 
 def _of_go1(size, frequency, speed=0.0) -> np.ndarray:
@@ -110,15 +110,15 @@ def _own(kind: str) -> np.ndarray:
 
 
 def _named(g) -> dict[str, np.ndarray]:
-    stiffness, late, damping = np.moveaxis(_moments(g), -1, 0)
-    net = damping - stiffness * late / 1e3
-    return {"stiffness": stiffness, "delay": late, "net damping": net}
+    stiffness, delay, damping = np.moveaxis(_moments(g), -1, 0)
+    net = damping - stiffness * delay / 1e3
+    return {"stiffness": stiffness, "delay": delay, "net damping": net}
 
 
-def moments_agree(kind: str = "copies", told: Sequence[str] = ("stiffness", "delay")) -> Measured:
+def moments_agree(kind: str = "copies", names: Sequence[str] = ("stiffness", "delay")) -> Measured:
     """Largest relative departure of a copy's moments from the network's own."""
-    own, found = _named(_own(kind)), _named(_rows(kind))
-    off = np.abs([found[name] / own[name] - 1 for name in told])
+    own, others = _named(_own(kind)), _named(_rows(kind))
+    off = np.abs([others[name] / own[name] - 1 for name in names])
     text = f"{100 * off.max():.1f} % at most, of {off.shape[1]} copies"
     return Measured(off.max(), text)
 
@@ -148,8 +148,8 @@ def _quoted() -> None:
     quote("walk-fixed-off", 100 * moments_agree("fixed", ["stiffness", "net damping"]).value)
     quote("walk-quick-go1", _moments(_of_go1(0.02, 2.0, -15.0).mean(0))[0])
     for robot in ("Go1", "ANYmal"):
-        told = _jumped(robot, _JUMPS, _SIZES[1])["torque"]
-        quote(f"walk-half-{robot.lower()}", round(1e3 * STEP * np.argmax(told >= 50)))
+        percent = _jumped(robot, _JUMPS, _SIZES[1])["torque"]
+        quote(f"walk-half-{robot.lower()}", round(1e3 * STEP * np.argmax(percent >= 50)))
     shuffled = _rows("shuffled")[:, :3]
     quote("walk-null-bar", np.abs(shuffled).max())
     quote("walk-null-stiffness", np.abs(shuffled.sum(1)).max())
@@ -163,18 +163,18 @@ def by_lag() -> figures.Illustration:
         "trained briefly": _rows("copies"),
         "longer, or jumps": np.concatenate([_rows("longer"), _rows("held")]),
     }
-    (go1, late, _), (anymal, later, _) = _moments(own), _moments(memory)
+    (go1, delay, _), (anymal, its_delay, _) = _moments(own), _moments(memory)
 
     def draw(figure):
         left, right = figure.subplots(1, 2, width_ratios=(1, 2))
         left.bar(age[:3], own[:3], 3.5, color=figures.COLOURS[0])
-        for k, (name, found) in enumerate(lines.items(), 1):
-            drawn = left.plot(age[:3], found[:, :3].T, color=figures.COLOURS[k], lw=0.8)
+        for k, (name, answers) in enumerate(lines.items(), 1):
+            drawn = left.plot(age[:3], answers[:, :3].T, color=figures.COLOURS[k], lw=0.8)
             drawn[0].set_label(name)
         figures.legend_above(figure, *left.get_legend_handles_labels())
-        left.set(title=f"Go1: {go1:.0f} N m/rad, {late:.0f} ms late", xticks=age[:3])
+        left.set(title=f"Go1: {go1:.0f} N m/rad, {delay:.0f} ms late", xticks=age[:3])
         right.bar(age, memory[:_REACH], 3.5, color=figures.COLOURS[0])
-        right.set(title=f"ANYmal: {anymal:.0f} N m/rad, {later:.0f} ms late")
+        right.set(title=f"ANYmal: {anymal:.0f} N m/rad, {its_delay:.0f} ms late")
         for axis in (left, right):
             axis.axhline(0, color=figures.INK, lw=0.7)
             axis.set(xlabel="the error is so old, ms", ylabel="answer, N m/rad")
@@ -182,7 +182,8 @@ def by_lag() -> figures.Illustration:
     alt = (
         f"Answers to the position error by its age. Go1: nearly all of {go1:.0f} N m/rad at 5 ms, "
         "as in copies trained for longer or on jumps; brief ones spread it over 0 to 10 ms. "
-        f"ANYmal: a hump over 70 ms with the sum {anymal:.0f} N m/rad and the mean {later:.0f} ms."
+        f"ANYmal: a hump over 70 ms with the sum {anymal:.0f} N m/rad and the mean "
+        f"{its_delay:.0f} ms."
     )
     return figures.illustrate(draw, alt, 7.2, 2.4)
 
@@ -193,9 +194,9 @@ def over_sizes() -> tuple[Sequence[str], list]:
     for name, of in (("Go1", _of_go1), ("ANYmal", _of_memory)):
         for frequency in (1, 3, 10):
             for size in (0.01, 0.1, 0.4):
-                found = _moments(of(size, frequency))
+                moments = _moments(of(size, frequency))
                 whole = _moments(of(size, frequency).mean(0))
-                cells = (f"{m:.2f} ({s:.2f})" for m, s in zip(whole, found.std(0)))
+                cells = (f"{m:.2f} ({s:.2f})" for m, s in zip(whole, moments.std(0)))
                 rows.append((name, f"{frequency} Hz", f"{size:g} rad", *cells))
     heads = ("network", "frequency", "size", "stiffness, N m/rad", "delay, ms")
     return (*heads, "damping, N m s/rad"), rows
@@ -212,8 +213,8 @@ def shares() -> tuple[Sequence[str], list]:
 
 def _ends(g) -> list[str]:
     values = (100 * _middle(g), 0), *((part, 1) for part in _moments(g).T[:2])
-    told = [[f"{x:.{n}f}" for x in (v.min(), v.max())] for v, n in values]
-    cells = (low if low == high else f"{low} to {high}" for low, high in told)
+    ends = [[f"{x:.{n}f}" for x in (v.min(), v.max())] for v, n in values]
+    cells = (low if low == high else f"{low} to {high}" for low, high in ends)
     return [cell.replace("-", "−") for cell in cells]
 
 
@@ -223,24 +224,24 @@ def copies() -> tuple[Sequence[str], list]:
     rows = [("network", "0", *_ranges(_own("copies")[None]))]
     for kind, name in _KINDS.items():
         errors = [row["error"] for row in study[kind]]
-        told = f"{min(errors):.3f} to {max(errors):.3f}"
-        rows.append((name, told, *_ranges(_rows(kind), kind != "shuffled")))
+        ranges = f"{min(errors):.3f} to {max(errors):.3f}"
+        rows.append((name, ranges, *_ranges(_rows(kind), kind != "shuffled")))
     random = -np.array(study["random"])
     ends = np.percentile([random[:, 1], random[:, :3].sum(1)], (5, 95), axis=1)
-    told = [f"{a:.1f} to {b:.1f}" for a, b in ends.T]
-    rows.append(("random, nine tenths of 100", "", *told, "", "", ""))
+    ranges = [f"{a:.1f} to {b:.1f}" for a, b in ends.T]
+    rows.append(("random, nine tenths of 100", "", *ranges, "", "", ""))
     rows = [tuple(cell.replace("-", "−") for cell in row) for row in rows]
     heads = ("who", "error, RMSS", "middle bar", "K, N m/rad", "d, ms")
     return (*heads, "B, N m s/rad", "B − Kd"), rows
 
 
 def _ranges(g, sure: bool = True) -> list[str]:
-    told = []
+    ranges = []
     for k, values in enumerate((g[:, 1], *_named(g).values(), _moments(g)[:, 2])):
         least, most = (f"{v:.{2 if k > 2 else 1}f}" for v in (values.min(), values.max()))
-        told.append(least if least == most else f"{least} to {most}")
-    middle, stiffness, late, net, damping = told
-    return [middle, stiffness, late if sure else "", damping, net if sure else ""]
+        ranges.append(least if least == most else f"{least} to {most}")
+    middle, stiffness, delay, net, damping = ranges
+    return [middle, stiffness, delay if sure else "", damping, net if sure else ""]
 
 
 def _exercise(number: int, left: float | None = None) -> Exercise:
@@ -270,11 +271,11 @@ def _exercise(number: int, left: float | None = None) -> Exercise:
             return abs(20 * (one - (now + one + two) / 3)) >= 2 and max(map(abs, e)) <= 0.1
 
         slips = [(lambda e: max(map(abs, e)) > 0.1, "an error is above 0.1 rad.")]
-        told = "it turns at every sample, as no smooth motion does."
+        reason = "it turns at every sample, as no smooth motion does."
         return Exercise(
             "numbers",
             apart,
-            told,
+            reason,
             slips,
             "Write down the difference of the two torques first.",
             count=3,
@@ -342,20 +343,20 @@ def _jumped(robot: str, old: int, size: float) -> dict[str, np.ndarray]:
     steps = np.concatenate([np.zeros(reach + 16), np.full(reach, size)])
     if robot == "Go1":
         seen = np.stack([steps[2 - k : len(steps) - k] for k in range(3)], -1)
-        told = -torque(np.column_stack([seen, np.zeros_like(seen)]), layers())
-        told = (told - told[-reach - 1])[-reach:]
+        torques = -torque(np.column_stack([seen, np.zeros_like(seen)]), layers())
+        torques = (torques - torques[-reach - 1])[-reach:]
         now = np.concatenate([error[:3], np.zeros(3)])
         answer = np.zeros(reach)
         answer[:3] = -gradient(now[None], layers())[0, :3]
     else:
-        told = _remembered(np.stack([steps, np.zeros_like(steps)], -1)[None])[0]
-        told = (told - told[-reach - 1])[-reach:]
+        torques = _remembered(np.stack([steps, np.zeros_like(steps)], -1)[None])[0]
+        torques = (torques - torques[-reach - 1])[-reach:]
         now = np.concatenate([np.zeros(40), error[::-1]])
         push = 1e-5 * np.eye(len(now))[::-1][:reach]
         ends = [
             _remembered(np.stack([now + s * push, np.zeros_like(push)], -1))[:, -1] for s in (1, -1)
         ]
         answer = (ends[0] - ends[1]) / 2e-5
-    told = 100 * told / told[-1]
-    so_far = np.where(np.arange(reach) <= old, told, np.nan)
-    return {"error": error, "torque": np.nan_to_num(so_far, nan=told[old]), "answer": answer}
+    torques = 100 * torques / torques[-1]
+    so_far = np.where(np.arange(reach) <= old, torques, np.nan)
+    return {"error": error, "torque": np.nan_to_num(so_far, nan=torques[old]), "answer": answer}

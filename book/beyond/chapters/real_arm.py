@@ -96,8 +96,8 @@ def _row(width: int) -> dict:
 
 def _members(width: int, name: str) -> tuple[np.ndarray, list[np.ndarray]]:
     """An entry of the networks, and of each kind of nulls."""
-    found = _row(width)
-    return np.array(found["real"][name]), [np.array(x[name]) for x in found["nulls"].values()]
+    row = _row(width)
+    return np.array(row["real"][name]), [np.array(x[name]) for x in row["nulls"].values()]
 
 
 def _gains(what: str, width: int) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
@@ -117,18 +117,18 @@ def named(ensemble: dict) -> np.ndarray:
 
 def excess(width: int = 21) -> Measured:
     """Share of velocity and acceleration filters, less the most that a kind of nulls gives."""
-    found = _row(width)
-    real, nulls = named(found["real"]), {n: named(x) for n, x in found["nulls"].items()}
-    told = "; ".join(
+    row = _row(width)
+    real, nulls = named(row["real"]), {n: named(x) for n, x in row["nulls"].items()}
+    of_nulls = "; ".join(
         f"{n} {100 * x.mean():.0f} % (p {p_value(real.mean(), x, 'more'):.2f})"
         for n, x in nulls.items()
     )
-    before = 100 * named(found["untrained"]).mean()
+    before = 100 * named(row["untrained"]).mean()
     return judged(
         lambda one, *others: mean(one) - np.max([mean(x) for x in others], axis=0),
         real,
         *nulls.values(),
-        text=f"{100 * real.mean():.0f} %; {told}; untrained {before:.0f} %",
+        text=f"{100 * real.mean():.0f} %; {of_nulls}; untrained {before:.0f} %",
     )
 
 
@@ -143,8 +143,8 @@ def calibrated(what: str = "inertia", width: int = 21) -> Measured:
     typical = np.median(_off(real[:, None], true))  # of one network, as each of the nulls is
     chance = max(p_value(typical, _off(x[:, None], true), "less") for x in nulls)
     pairs = zip(np.median(real, 0), true)
-    told = ", ".join(f"{significant(a, 2)} for {significant(b, 2)}" for a, b in pairs)
-    text = f"{told} {_UNITS[what]} at joints 1 to 6; as near by chance: p {chance:.2f}"
+    compared = ", ".join(f"{significant(a, 2)} for {significant(b, 2)}" for a, b in pairs)
+    text = f"{compared} {_UNITS[what]} at joints 1 to 6; as near by chance: p {chance:.2f}"
     return judged(lambda each: _off(each, true), real, text=text)
 
 
@@ -163,8 +163,8 @@ def beyond_null(what: str = "friction", width: int = 11) -> Measured:
         return (np.median(np.abs(drawn / true - 1), axis=-2) < edge).sum(-1)
 
     off = np.median(np.abs(real / true - 1), 0)
-    told = ", ".join(f"{100 * a:.0f} % ({100 * b:.0f} %)" for a, b in zip(off, edge))
-    return judged(joints, real, text=f"off by {told} at joints 1 to 6, in brackets by chance")
+    compared = ", ".join(f"{100 * a:.0f} % ({100 * b:.0f} %)" for a, b in zip(off, edge))
+    return judged(joints, real, text=f"off by {compared} at joints 1 to 6, in brackets by chance")
 
 
 def follow(what: str = "friction", width: int = 11) -> Measured:
@@ -186,11 +186,11 @@ def unique_beyond(what: str = "velocity", width: int = 21) -> Measured:
     real, nulls = _members(width, f"unique {what}")
     edge = np.max([np.percentile(x, 95, axis=0) for x in nulls], axis=0)
     pairs = zip(np.median(real, 0), edge)
-    told = ", ".join(f"{100 * a:.0f} ({100 * b:.0f})" for a, b in pairs)
+    compared = ", ".join(f"{100 * a:.0f} ({100 * b:.0f})" for a, b in pairs)
     return judged(
         lambda drawn: (np.median(drawn, axis=-2) > edge).sum(-1),
         real,
-        text=f"{told} % at joints 1 to 6, in brackets by chance",
+        text=f"{compared} % at joints 1 to 6, in brackets by chance",
     )
 
 
@@ -206,12 +206,12 @@ def shares_follow(width: int = 21) -> Measured:
 
 def compensate_friction(width: int = 21) -> Measured:
     """Share of the hidden units' non-linear part that friction and rigid body explain."""
-    found = _row(width)
-    curved = np.array(found["curved"])
-    told = ", ".join(significant(x, 2) for x in np.median(curved, 0))
-    nulls = [np.median(x["curved"], axis=-1) for x in found["nulls"].values()]
+    row = _row(width)
+    curved = np.array(row["curved"])
+    medians = ", ".join(significant(x, 2) for x in np.median(curved, 0))
+    nulls = [np.median(x["curved"], axis=-1) for x in row["nulls"].values()]
     chance = max(float(np.percentile(x, 95)) for x in nulls)
-    text = f"R² {told} at joints 1 to 6; unrelated currents reach {chance:.2f} in one of twenty"
+    text = f"R² {medians} at joints 1 to 6; unrelated currents reach {chance:.2f} in one of twenty"
     return judged(median, curved, text=text)
 
 
@@ -243,8 +243,8 @@ def _closed(power: int = 1) -> float:
 def coulomb_apart() -> float:
     """How far newton metres for an ampere of Coulomb friction are apart at joints 1 to 5."""
     data = Windowed.of(_RATE, 11)
-    found = identified(data.states, data.current).coulomb
-    ratio = (np.array(COULOMB) / np.abs(REDUCTION) / found)[:5]
+    friction = identified(data.states, data.current).coulomb
+    ratio = (np.array(COULOMB) / np.abs(REDUCTION) / friction)[:5]
     return float(ratio.max() / ratio.min() - 1)
 
 
@@ -278,20 +278,20 @@ def _said() -> None:
     stated("real-network-loses", bool(best["network"] > best["ridge"] > best["identified"]))
     stated("real-fewer-names", excess(21).replicates < 0)
     stated("real-tuned-turns", alike["network"] < alike["linear filter"])
-    found = swinging.findings()
-    stated("two-equations-win", found["equations win"])
-    stated("two-wiggles-cost", found["wiggles cost"])
-    stated("two-not-rigid", found["not rigid"])
-    stated("two-longer-less", found["longer holds less"])
-    stated("two-beyond-nulls", found["beyond nulls"])
-    stated("two-like-nulls", found["like nulls"])
-    stated("two-short-shrinks", found["short shrinks"])
-    stated("two-runs-hardly", found["two runs hardly"])
-    stated("two-window-matters", found["window matters"])
-    stated("two-long-err", found["long windows err"])
-    stated("two-smooth-loses-nothing", found["smooth loses nothing"])
-    stated("two-instruments-find", found["instruments find"])
-    stated("two-smoothers-trade", found["cutoffs trade"] and found["likeliest fails"])
+    findings = swinging.findings()
+    stated("two-equations-win", findings["equations win"])
+    stated("two-wiggles-cost", findings["wiggles cost"])
+    stated("two-not-rigid", findings["not rigid"])
+    stated("two-longer-less", findings["longer holds less"])
+    stated("two-beyond-nulls", findings["beyond nulls"])
+    stated("two-like-nulls", findings["like nulls"])
+    stated("two-short-shrinks", findings["short shrinks"])
+    stated("two-runs-hardly", findings["two runs hardly"])
+    stated("two-window-matters", findings["window matters"])
+    stated("two-long-err", findings["long windows err"])
+    stated("two-smooth-loses-nothing", findings["smooth loses nothing"])
+    stated("two-instruments-find", findings["instruments find"])
+    stated("two-smoothers-trade", findings["cutoffs trade"] and findings["likeliest fails"])
 
 
 def _parts_figure() -> Illustration:
@@ -343,9 +343,9 @@ def _exercise(number: int, *given) -> Exercise:
             (Between(0.8, 1.2), "a constant does as well as that."),
         ]
         right = Between(0.5 * at_random(model), 1.7 * at_random(model))
-        told = "the neighbours of each window were learnt, so it says little about other motions."
+        reason = "the neighbours of each window were learnt, so it says little about other motions."
         return Exercise(
-            "number", right, told, slips, "How much of a window do its neighbours share?"
+            "number", right, reason, slips, "How much of a window do its neighbours share?"
         )
     elif number == 2:
         fitted, error = given
@@ -354,9 +354,13 @@ def _exercise(number: int, *given) -> Exercise:
             many = sum(columns(j).shape[1] for j in range(6))
             return many <= 30 and error(fitted(columns)) <= 0.25
 
-        told = "friction, inertia and weight are enough, without coupling or centrifugal torque."
+        reason = "friction, inertia and weight are enough, without coupling or centrifugal torque."
         return Exercise(
-            "function", few, told, [], "There are more than 30 numbers, or the error is above 0.25."
+            "function",
+            few,
+            reason,
+            [],
+            "There are more than 30 numbers, or the error is above 0.25.",
         )
     elif number == 3:
         slips = [
@@ -373,11 +377,11 @@ def _exercise(number: int, *given) -> Exercise:
             off = [np.abs(gravity(*pair, design) - 1).max() for design in ("A0", "C0", "C1")]
             return max(off) < 0.07
 
-        told = "both kinds of smoothing share the work."
+        reason = "both kinds of smoothing share the work."
         return Exercise(
             "numbers",
             near,
-            told,
+            reason,
             [],
             "One design is more than 7 % off. Which window smooths what?",
             count=2,

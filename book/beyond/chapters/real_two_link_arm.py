@@ -35,14 +35,14 @@ def _published(design: str) -> np.ndarray:
 
 def _gravity(design: str, kind: str) -> np.ndarray:
     """Gravity of shoulder and elbow over the published one, by length, (lengths, 2)."""
-    found = np.array(_designs()[design]["identified"]["by length"][kind])
-    return found[:, 3:5] / _published(design)[3:5]
+    parameters = np.array(_designs()[design]["identified"]["by length"][kind])
+    return parameters[:, 3:5] / _published(design)[3:5]
 
 
 def _by(design: str, way: str) -> np.ndarray:
     """Gravity of shoulder and elbow over the published one by another way, (settings, 2)."""
-    found = results.read("two-link-instruments")["designs"][design][way]
-    return np.array([row["values"][3:5] for row in found]) / _published(design)[3:5]
+    rows = results.read("two-link-instruments")["designs"][design][way]
+    return np.array([row["values"][3:5] for row in rows]) / _published(design)[3:5]
 
 
 def _read(design: str, width: int, who: str) -> np.ndarray:
@@ -63,7 +63,7 @@ def _errors(design: str, model: str) -> np.ndarray:
 def _inertia(width: int = 41) -> dict[str, np.ndarray]:
     """Inertia of each joint's own motion in ten networks of each design, (networks, 2)."""
     every = {design: _read(design, width, "networks") for design in _designs()}
-    return {design: found[:, [0, 1], [0, 1], 2] for design, found in every.items()}
+    return {design: moments[:, [0, 1], [0, 1], 2] for design, moments in every.items()}
 
 
 def _root(x) -> np.ndarray:
@@ -96,7 +96,7 @@ def elbow_moves() -> Measured:
     def least(short, *long):
         return np.min([np.median(x, -1) for x in long], axis=0) / np.median(short, -1)
 
-    each = [found[:, 1] for found in _inertia().values()]
+    each = [moments[:, 1] for moments in _inertia().values()]
     true = [_read(design, 41, "published")[1, 1, 2] for design in _inertia()]
     value = float(least(*each))
     text = f"{value:.2f} times; by the published parameters {min(true[1:]) / true[0]:.2f} times"
@@ -145,7 +145,7 @@ def findings() -> dict[str, bool]:
         np.abs(_nulls(d)[:, [0, 1], [0, 1], 2]).max(0) / _inertia()[d].min(0) for d in _designs()
     ]
     gains = [[np.median(_inertia(w)[d][:, 0]) for w in (11, 41)] for d in _designs()]
-    short = [float(np.median(found[:, 1])) for found in _inertia(11).values()]
+    short = [float(np.median(moments[:, 1])) for moments in _inertia(11).values()]
     pairs = [row["moments"][1][1][2] for row in _designs()["C1"]["predicted"]]
     long = [_gravity(d, "measured")[-1, 0] for d in _designs()]
     cut = {d: _by(d, "Butterworth")[:, 0] for d in _designs()}
@@ -174,34 +174,34 @@ def _window_figure() -> figures.Illustration:
 
     def draw(figure):
         left, right = figure.subplots(1, 2, sharey=True)
-        for k, (design, kept) in enumerate(_designs().items()):
-            sure = student.ppf(0.975, len(kept["runs"]) - 1) / _published(design)[3]
-            bars = sure * np.array(kept["identified"]["errors by length"])[:, 3]
+        for k, (design, entry) in enumerate(_designs().items()):
+            sure = student.ppf(0.975, len(entry["runs"]) - 1) / _published(design)[3]
+            bars = sure * np.array(entry["identified"]["errors by length"])[:, 3]
             y = _gravity(design, "measured")[:, 0]
             left.errorbar(x + 3 * k, y, bars, color=colours[k], elinewidth=0.7, label=design)
-            found = _by(design, "instruments")[:, 0]
+            estimates = _by(design, "instruments")[:, 0]
             with_instruments = "with instruments" if k == 0 else None
-            left.plot(x + 3 * k, found, ":", color=colours[k], label=with_instruments)
+            left.plot(x + 3 * k, estimates, ":", color=colours[k], label=with_instruments)
             for width in (11, 21, 41):
                 true = _read(design, width, "published")[0, 0, 0]
                 looks = [("networks", ".", colours[k], 0), ("solved", "x", colours[k], 20)]
                 looks += [("", "_", figures.FAINT, 0)] * (width == 41)
                 for who, look, colour, aside in looks:
-                    found = _read(design, width, who) if who else _nulls(design)
-                    place = np.full(len(found), 10 * width + 6 * k + aside)
-                    right.plot(place, found[:, 0, 0, 0] / true, look, color=colour, ms=4)
+                    estimates = _read(design, width, who) if who else _nulls(design)
+                    place = np.full(len(estimates), 10 * width + 6 * k + aside)
+                    right.plot(place, estimates[:, 0, 0, 0] / true, look, color=colour, ms=4)
         for axis, title in ((left, "Least squares"), (right, "Networks of 1988")):
             axis.axhline(1, color=figures.INK, lw=0.7, ls="--")
             axis.set(title=title, xlabel="window, ms", ylabel="gravity, share")
         figures.legend_above(figure, *left.get_legend_handles_labels())
 
-    told = "; ".join(
+    ratios = "; ".join(
         design + ", ".join(f" {_gravity(design, 'measured')[at, 0]:.2f}" for at in (0, 6, -1))
         for design in _designs()
     )
     alt = (
         "The shoulder's gravity over that of the builders, by window. Plain least squares at 50, "
-        f"210 and 450 ms: {told}. With instruments (dotted) it is near 1 from 50 ms on, "
+        f"210 and 450 ms: {ratios}. With instruments (dotted) it is near 1 from 50 ms on, "
         "and above 1 with long windows. Networks rise from 110 to 410 ms; unrelated torques "
         "scatter about 0."
     )
@@ -217,11 +217,11 @@ def _elbow_figure() -> figures.Illustration:
         labels = {"exact": "of known torques", "nulls": "of unrelated torques"}
         for k, design in enumerate(_designs()):
             for n, (who, (marker, colour)) in enumerate(looks.items()):
-                found = _nulls(design) if who == "nulls" else _read(design, 41, who)
-                place = np.full(len(found), k + 0.15 * (n - 1))
+                moments = _nulls(design) if who == "nulls" else _read(design, 41, who)
+                place = np.full(len(moments), k + 0.15 * (n - 1))
                 ink = figures.FAINT if colour is None else figures.COLOURS[colour]
                 label = labels.get(who, who) if k == 0 else None
-                axis.plot(place, found[:, 1, 1, 2], marker, color=ink, ms=4, label=label)
+                axis.plot(place, moments[:, 1, 1, 2], marker, color=ink, ms=4, label=label)
             true = _read(design, 41, "published")[1, 1, 2]
             label = "builders" if k == 0 else None
             axis.hlines(true, k - 0.3, k + 0.3, color=figures.INK, lw=1, label=label)
@@ -230,10 +230,10 @@ def _elbow_figure() -> figures.Illustration:
                  xticks=range(3), xticklabels=names)  # fmt: skip
         figures.legend_above(figure, *axis.get_legend_handles_labels())
 
-    told = ", ".join(f"{design} {np.median(x[:, 1]):.3f}" for design, x in _inertia().items())
+    medians = ", ".join(f"{design} {np.median(x[:, 1]):.3f}" for design, x in _inertia().items())
     true = ", ".join(f"{_read(d, 41, 'published')[1, 1, 2]:.3f}" for d in _designs())
     alt = (
-        f"Elbow's inertia in networks: {told} kg m², builders {true}; "
+        f"Elbow's inertia in networks: {medians} kg m², builders {true}; "
         "unrelated torques scatter about 0."
     )
     return figures.illustrate(draw, alt, 6.0, 1.7)

@@ -113,14 +113,14 @@ def learnt_over(against: str = "Butterworth filter") -> list[np.ndarray]:
     """Errors of learnt filters over a smoother's: on the square, then on two other arms."""
     places = [("the report's arm", "inside"), ("the report's arm", "outside")]
     places += [("vertical", "trajectory 6"), ("coarse encoder", "trajectory 6")]
-    found = []
+    ratios = []
     for arm, part in places:
         ways = smoothed(arm)
         mine, other = (
             np.array(ways[name]["errors"][part]) for name in ("filters and equations", against)
         )
-        found.append(mine / other)
-    return found
+        ratios.append(mine / other)
+    return ratios
 
 
 def inertias_off(way: str, arm: str = "the report's arm") -> np.ndarray:
@@ -147,12 +147,12 @@ def _errors(name: str, part: str = "trajectory 6") -> np.ndarray:
 def _ratios() -> Table:
     """Errors of some rivals over the network's, on trajectory 6 and on the square, and counts."""
     rows = []
-    for name, told in _BESIDE.items():
+    for name, label in _BESIDE.items():
         cells = []
         for part in _PARTS:
-            found = over(name, part)
-            cells.append(f"{np.median(found):.2f} ({found.min():.2f} to {found.max():.2f})")
-        rows.append((told, *cells, f"{np.median(_entered()[name]['count']):,.0f}"))
+            ratios = over(name, part)
+            cells.append(f"{np.median(ratios):.2f} ({ratios.min():.2f} to {ratios.max():.2f})")
+        rows.append((label, *cells, f"{np.median(_entered()[name]['count']):,.0f}"))
     heads = "trajectory 6", "square, in the hull", "outside the hull", "numbers stored"
     return Table(("rival", *heads), rows)
 
@@ -164,13 +164,13 @@ def show(name: str = "errors") -> Illustration | Table:
     marked = results.read("tuned")["reference"]
     shown = {}
     for name, one in _entered().items():
-        errors, count = _errors(name), np.median(one["count"])
-        shown[_TOLD.get(name, name)] = errors, f"{np.median(errors):.3f}", f"{count:,.0f}"
+        errors, stored = _errors(name), np.median(one["count"])
+        shown[_TOLD.get(name, name)] = errors, f"{np.median(errors):.3f}", f"{stored:,.0f}"
     order = sorted(shown, key=lambda name: np.median(shown[name][0]))
-    told = "; ".join(f"{name} {shown[name][1]}, {shown[name][2]} numbers" for name in order)
+    medians = "; ".join(f"{name} {shown[name][1]}, {shown[name][2]} numbers" for name in order)
     floor = results.read("rivals")["floor"]["positions"]["trajectory 6"]
     labels = "error on trajectory 6, RMSS", "error", "numbers"
-    return _dots(shown, marked, floor, labels, f"Rivals by their median error: {told}.")
+    return _dots(shown, marked, floor, labels, f"Rivals by their median error: {medians}.")
 
 
 # --- how each rival of 1988 comes from a window to a torque
@@ -206,11 +206,11 @@ def _plane(axis: Axes, low, high, asked) -> None:
 
 def _draw_table(axis: Axes) -> None:
     known, asked = map(_elbow, _learnt())
-    table = CellTable(12).fit(known)
-    low, high = table.low[0], table.high[0]
-    edges = [np.rad2deg(np.linspace(a, b, table.cells + 1)) for a, b in zip(low[:2], high[:2])]
-    torque = np.full((table.cells, table.cells), np.nan)
-    torque[table.filled[:, 1], table.filled[:, 0]] = table.coefficients[:, 0, 0]
+    cell_table = CellTable(12).fit(known)
+    low, high = cell_table.low[0], cell_table.high[0]
+    edges = [np.rad2deg(np.linspace(a, b, cell_table.cells + 1)) for a, b in zip(low[:2], high[:2])]
+    torque = np.full((cell_table.cells, cell_table.cells), np.nan)
+    torque[cell_table.filled[:, 1], cell_table.filled[:, 0]] = cell_table.coefficients[:, 0, 0]
     most = np.nanquantile(abs(torque), 0.95)
     axis.pcolormesh(*edges, torque, cmap=_SIGNED, vmin=-most, vmax=most, ec=FAINT, lw=0.3)
     _plane(axis, low, high, asked)
@@ -256,9 +256,9 @@ def _draw_polynomial(axis: Axes) -> None:
 
 def _draw_filter(axis: Axes) -> None:
     linear = Linear().fit(_learnt()[0])
-    late = 1000 * LOG_STEP * (np.arange(_WIDTH) - _WIDTH // 2)
+    milliseconds = 1000 * LOG_STEP * (np.arange(_WIDTH) - _WIDTH // 2)
     for j, weights in enumerate(linear.matrix[:, 1].reshape(2, _WIDTH)):
-        axis.plot(late, weights, DASHES[j], color=COLOURS[j], label=JOINTS[j])
+        axis.plot(milliseconds, weights, DASHES[j], color=COLOURS[j], label=JOINTS[j])
     axis.axhline(0, color=FAINT, lw=0.6)
     axis.set(xlabel="time in the window, ms", ylabel="weight, N m/rad")
     axis.legend(loc="lower left", handlelength=1.2, fontsize=8, borderaxespad=0.1)
@@ -267,13 +267,13 @@ def _draw_filter(axis: Axes) -> None:
 
 def _draw_equations(axis: Axes) -> None:
     known, asked = (cases.estimated() for cases in _learnt())
-    found = Identified().fit(known).parameters()
+    parameters = Identified().fit(known).parameters()
     (_, v1, a1), (q2, v2, a2) = asked.x[_MOMENT]
     bars = {
-        "b": found["b"] * (np.cos(q2) * a1 + np.sin(q2) * v1**2),
-        "d": found["d"] * (a1 + a2),
-        "viscous": found["F_v2"] * v2,
-        "Coulomb": found["F_c2"] * np.sign(v2),
+        "b": parameters["b"] * (np.cos(q2) * a1 + np.sin(q2) * v1**2),
+        "d": parameters["d"] * (a1 + a2),
+        "viscous": parameters["F_v2"] * v2,
+        "Coulomb": parameters["F_c2"] * np.sign(v2),
     }
     left = np.cumsum([0.0, *bars.values()])
     rows = np.arange(len(bars) + 1)
@@ -349,10 +349,10 @@ def parity_drawn() -> Illustration:
         for bits, place, even in zip(corners, places, parity(corners)):
             look = dict(mfc=COLOURS[1] if even else "none", mec=COLOURS[1], ms=9)
             cube.plot(*place, "o", **look)
-            told = "".join(map(str, bits))
+            digits = "".join(map(str, bits))
             side = dict(ha="left", va="bottom") if bits[1] else dict(ha="right", va="top")
             shift = (6, 5) if bits[1] else (-6, -5)
-            cube.annotate(told, place, shift, textcoords="offset points", **side)
+            cube.annotate(digits, place, shift, textcoords="offset points", **side)
         cube.set(xlim=(-0.5, 1.9), ylim=(-0.4, 1.7), aspect="equal")
         cube.set_axis_off()
         counts.plot(many, terms, "o-", color=COLOURS[0], ms=4, label="polynomial")
@@ -386,8 +386,8 @@ def _quoted() -> None:
         quote(f"rivals-network-{end}", value(_errors(study["reference"])))
     for short, name in _SMOOTHED.items():
         quote(f"rivals-{short}", np.median(_errors(name)))
-    late = smoothed("late sensor")[study["own"]]
-    quote("rivals-late-applied", np.median(late["applied"]["trajectory 6"]))
+    of_late_sensor = smoothed("late sensor")[study["own"]]
+    quote("rivals-late-applied", np.median(of_late_sensor["applied"]["trajectory 6"]))
     free = smoothed("late sensor")["Butterworth filter and a delay"]
     stated("rivals-delay-found", {delay for _, delay in free["setting"]} == {2})  # samples: 20 ms
     won = over("Lagrangian network") < 1
@@ -463,9 +463,9 @@ def _exercise(number: int, *asked) -> Exercise:
         )
     elif number == 2:
         near = Between(0.5 * np.array(asked), 2 * np.array(asked))
-        told = "a known form carries over, free weights do not."
+        reason = "a known form carries over, free weights do not."
         return Exercise(
-            "numbers", near, told, [], "one error hardly grows, the other one grows a lot."
+            "numbers", near, reason, [], "one error hardly grows, the other one grows a lot."
         )
     else:
         (with_these,) = asked

@@ -88,8 +88,8 @@ def scatter(
     predictor: str = "RMSS", width: int | None = None, setup: str = JOINT_DAMPING.name
 ) -> tuple[np.ndarray, np.ndarray]:
     """A predictor and the end-point error of networks of one window, or of all together."""
-    found = _reading(setup)["scatter"]
-    cells = [found[str(width)]] if width else list(found.values())
+    by_window = _reading(setup)["scatter"]
+    cells = [by_window[str(width)]] if width else list(by_window.values())
     return tuple(np.concatenate([cell[n] for cell in cells]) for n in (predictor, "end point"))
 
 
@@ -144,17 +144,17 @@ def _inside(loop: str, setup: str) -> tuple[np.ndarray, dict]:
 
 def unstable_at(setup: str = JOINT_DAMPING.name, late: int = 0) -> Measured:
     """The share of the median network at which the guard stops half of the runs."""
-    shares, found = _inside(f"network, {late}", setup)
-    stopped = np.array(found["stopped"]) >= 0.5
+    shares, inside = _inside(f"network, {late}", setup)
+    stopped = np.array(inside["stopped"]) >= 0.5
     first = np.where(stopped.any(-1), shares[stopped.argmax(-1)], np.inf)
-    told = ", ".join("none" if np.isinf(x) else f"{x:g}" for x in first)
-    return judged(median, np.minimum(first, 1e3), text=f"at {told}")
+    words = ", ".join("none" if np.isinf(x) else f"{x:g}" for x in first)
+    return judged(median, np.minimum(first, 1e3), text=f"at {words}")
 
 
 def onsets(line: str = "network", setup: str = JOINT_DAMPING.name) -> tuple[np.ndarray, np.ndarray]:
     """Shares, by model, at which a loop with it inside turns: by its poles, and as simulated."""
-    shares, found = _inside(f"{line}, 0", setup)
-    poles, error = (np.array(found[name]) for name in ("poles", "error"))
+    shares, inside = _inside(f"{line}, 0", setup)
+    poles, error = (np.array(inside[name]) for name in ("poles", "error"))
     predicted = [_crossing(shares, row, 1.0) for row in poles]
     simulated = [_crossing(shares, row, 2 * row.min()) for row in error]
     return np.array(predicted), np.array(simulated)
@@ -173,8 +173,8 @@ def _crossing(shares: np.ndarray, values: np.ndarray, limit: float) -> float:
 def onset() -> Measured:
     """The share at which poles say that the loop turns over the one at which it does."""
     pair = onsets()
-    told = " and ".join(significant(float(np.median(x)), 2) for x in pair)
-    return judged(lambda drawn: median(drawn[0] / drawn[1]), pair, text=f"shares {told}")
+    both = " and ".join(significant(float(np.median(x)), 2) for x in pair)
+    return judged(lambda drawn: median(drawn[0] / drawn[1]), pair, text=f"shares {both}")
 
 
 # --- the lesson ---------------------------------------------------------------------------
@@ -187,7 +187,7 @@ def _median(line: str, setup: str = JOINT_DAMPING.name, part: str = "whole") -> 
 def _quoted() -> None:
     """The numbers of the prose."""
     for tail, setup in zip(("", "-sf"), _SETUPS):
-        found, copies = _reading(setup), results.read("loop-conditions")["copies"][setup]
+        reading, copies = _reading(setup), results.read("loop-conditions")["copies"][setup]
         lines = {
             "none": "none",
             NETWORK: "network",
@@ -198,13 +198,13 @@ def _quoted() -> None:
             quote(f"run-time-{name}{tail}", _median(line, setup))
         quote(f"run-time-copy-slow{tail}", np.median(copies["0.1"]))
         for line in ("exact", "network"):
-            at = found["corner"]["rounded"]["0.1"][line]
+            at = reading["corner"]["rounded"]["0.1"][line]
             quote(f"run-time-rounded-{line}{tail}", np.median(at))
-        quote(f"run-time-late-pole{tail}", found["inside"]["network, 5"]["poles"][0][0])
+        quote(f"run-time-late-pole{tail}", reading["inside"]["network, 5"]["poles"][0][0])
         one = results.read("run-time")["shares"].index(1.0)
-        stopped = np.array(found["inside"]["network, 5"]["stopped"])
+        stopped = np.array(reading["inside"]["network, 5"]["stopped"])
         quote(f"run-time-late-stopped{tail}", 100 * np.mean(stopped[:, one]))
-        quote(f"run-time-bound-share{tail}", 100 * np.max(found["bound"]["share"]))
+        quote(f"run-time-bound-share{tail}", 100 * np.max(reading["bound"]["share"]))
     pole = _reading()["inside"]["network, 5"]["poles"][0][0]
     quote("run-time-doubling", CONTROL_STEP * np.log(2) / np.log(pole))
     soft = JOINT_DAMPING_VISCOUS[0] / JOINT_DAMPING.controller.kp[0]
@@ -258,10 +258,10 @@ def _square_figure() -> Illustration:
     shape = (study["points"],) * 2
     square = _reading()["square"]
     grids = {title: np.reshape(square[line]["map"], shape) for title, line in lines.items()}
-    told = ", ".join(f"{title}, median {_median(line):.1f} mm" for title, line in lines.items())
+    medians = ", ".join(f"{title}, median {_median(line):.1f} mm" for title, line in lines.items())
     labels = ("extent of the shoulder, °", "extent of the elbow, °", "end-point error, mm")
     edge = np.array(study["extents"])[: study["points"], 1]
-    return maps(edge, grids, labels, f"Maps over the extents of shoulder and elbow: {told}.")
+    return maps(edge, grids, labels, f"Maps over the extents of shoulder and elbow: {medians}.")
 
 
 _SHOWN = {"square": _square_figure, "against": _against}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from beyond.studies.loop.run_time_parts import exact
+from beyond.studies.loop.feedforwards import exact
 from ddlib.figures import COLOURS, FAINT, Illustration, illustrate, legend_above, plain_ticks
 from ddlib.setups import JOINT_DAMPING, Setup
 from ddlib.tables import Table, how_many, quote, spread
@@ -30,7 +30,7 @@ _BY_DESCENT = "network: pick-and-place, by descent"
 
 def _traded() -> Illustration:
     """The hand's errors on one family against those on the other: a dot for each network."""
-    points = {told: [hand(name, m) for m in _FAMILIES] for name, told in _DOTS.items()}
+    points = {label: [hand(name, m) for m in _FAMILIES] for name, label in _DOTS.items()}
     points[_BY_DESCENT] = [np.array(_descended()[m]["network"]) for m in _FAMILIES]
     nothing = [hand("none", m)[0] for m in _FAMILIES]
 
@@ -50,13 +50,13 @@ def _traded() -> Illustration:
         plain_ticks(axis.yaxis)
         legend_above(figure, *axis.get_legend_handles_labels())
 
-    told = "; ".join(
+    medians = "; ".join(
         f"{name} {np.median(circles):.1f} and {np.median(pick):.1f} mm"
         for name, (pick, circles) in points.items()
     )
     alt = (
         "Errors of the hand on circles over errors on pick-and-place, logarithmic. Without "
-        f"feedforward {nothing[1]:.1f} and {nothing[0]:.1f} mm. Medians: {told}."
+        f"feedforward {nothing[1]:.1f} and {nothing[0]:.1f} mm. Medians: {medians}."
     )
     return illustrate(draw, alt, 6.2, 3.4)
 
@@ -70,8 +70,8 @@ def hands_table() -> Table:
     """Errors of the hand on both families, by what gave the torques in advance."""
     rows = [("none", *(f"{hand('none', motion)[0]:.1f}" for motion in _FAMILIES[::-1]))]
     filters = {"linear filter, pick and place": "linear filter: pick-and-place"}
-    for name, told in (_DOTS | filters).items():
-        rows.append((told, *(spread(hand(name, motion)) for motion in _FAMILIES[::-1])))
+    for name, label in (_DOTS | filters).items():
+        rows.append((label, *(spread(hand(name, motion)) for motion in _FAMILIES[::-1])))
     of_descent = [_descended()[motion]["network"] for motion in _FAMILIES[::-1]]
     rows.append((_BY_DESCENT, *map(spread, of_descent)))
     return Table(("torques in advance", "on circles, mm", "on pick-and-place, mm"), rows)
@@ -80,9 +80,9 @@ def hands_table() -> Table:
 def stopped_table() -> Table:
     """Errors of the hand with networks that stopped early, and after 60 steps."""
     rows = []
-    for name, told in (("none", "none"), ("chosen", "stopped early"), ("60", "after 60 steps")):
+    for name, label in (("none", "none"), ("chosen", "stopped early"), ("60", "after 60 steps")):
         cells = [np.median(_stopped()["hands"][motion][name]) for motion in _FAMILIES[::-1]]
-        rows.append((told, *(f"{x:.1f}" for x in cells)))
+        rows.append((label, *(f"{x:.1f}" for x in cells)))
     return Table(("torques in advance", "on circles, mm", "on pick-and-place, mm"), rows)
 
 
@@ -100,8 +100,8 @@ def error(
     rival: str, learnt: str, asked: str, setup: str = JOINT_DAMPING.name, width: int = 21
 ) -> np.ndarray:
     """RMS torque errors of both joints together on a test, N m, one for each day."""
-    found = _row(setup)
-    rows = found["errors"][rival] if width == 21 else found["wider"][str(width)]
+    row = _row(setup)
+    rows = row["errors"][rival] if width == 21 else row["wider"][str(width)]
     return np.sqrt((np.array(rows[learnt][asked])[:, 1:] ** 2).mean(-1))
 
 
@@ -126,10 +126,10 @@ def turns() -> Measured:
     qd = pick_and_place(APPENDIX_I, t).qd
     moving = np.abs(qd).max(1) > 0
     back = np.diff(np.sign(qd), axis=1) != 0
-    count = back.sum(1)[moving]
+    reversals = back.sum(1)[moving]
     where = t[back.argmax(1)[moving]]
-    once = bool((count == 1).all() and np.abs(where - MOTION_SECONDS / 2).max() < 0.002)
-    return Measured(once, f"{count.max()} turn a joint, after {where.mean():.2f} s")
+    once = bool((reversals == 1).all() and np.abs(where - MOTION_SECONDS / 2).max() < 0.002)
+    return Measured(once, f"{reversals.max()} turn a joint, after {where.mean():.2f} s")
 
 
 def _median(learnt: str, asked: str, rival: str = "network") -> float:
@@ -174,11 +174,14 @@ def _said() -> None:
     stated("stir-carries", resampled(known) < np.minimum(*others))
     stopped = claims.measured("stirring-hand-worse-stopped").replicates
     stated("stir-stopped-helps", stopped < 1)
-    kept = _stopped()
-    stated("stir-never-sixty", 60 not in kept["steps"])
-    early, late = (resampled(kept["hands"][pick][name]) for name in ("chosen", "60"))
-    stated("stir-stopped-loses-nothing", early < 1.1 * late)
-    sixty = resampled(kept["hands"][circles]["60"]) < kept["hands"][circles]["none"][0]
+    stopped_early = _stopped()
+    stated("stir-never-sixty", 60 not in stopped_early["steps"])
+    chosen, at_sixty = (resampled(stopped_early["hands"][pick][name]) for name in ("chosen", "60"))
+    stated("stir-stopped-loses-nothing", chosen < 1.1 * at_sixty)
+    sixty = (
+        resampled(stopped_early["hands"][circles]["60"])
+        < stopped_early["hands"][circles]["none"][0]
+    )
     stated("stir-harm-later", sixty & (of_pick > hand("none")[0]))
     stated("stir-network-stays", draws(pick, circles) > 5 * draws(circles, circles))
     both = [draws("both", family) < 1.25 * draws(family, family) for family in _FAMILIES]
@@ -217,8 +220,8 @@ def _exercise(number: int, *given) -> Exercise:
             (1 / np.sin(np.deg2rad(5)), "the hand's distance d is another one, too."),
             (1 / right, "the other way round."),
         ]
-        told = "d over the determinant of the Jacobian grows."
-        return Exercise("number", right, told, slips, "Differentiate the law of cosines.")
+        reason = "d over the determinant of the Jacobian grows."
+        return Exercise("number", right, reason, slips, "Differentiate the law of cosines.")
     elif number == 2:
         slips = [
             ((-1, 1, -1), "a film that runs backwards has the same accelerations."),

@@ -73,12 +73,12 @@ def _verdicts(*ids: str) -> list[str]:
 
 def _orders() -> dict[str, float]:
     """How often networks drawn one of each window have the printed order, by reading."""
-    cells, found = results.read("table-4-1")["setups"], {}
+    cells, shares = results.read("table-4-1")["setups"], {}
     for name in SETUPS:
         short, middle, long = (np.array(cells[name][str(w)]["errors"]["test"]) for w in WINDOWS)
         above = [(other > middle[:, None]).mean(1) for other in (short, long)]
-        found[name] = float((above[0] * above[1]).mean())
-    return found
+        shares[name] = float((above[0] * above[1]).mean())
+    return shares
 
 
 def _acceleration() -> tuple[np.ndarray, list[float]]:
@@ -107,8 +107,8 @@ def _names() -> Table:
         for size in (0.03, 0.3):
             shares = []
             for name in ("acceleration", "velocity"):
-                found = start.shares_beside(reading, size, name)
-                own, *others = (100 * x.mean() for x in found.values())
+                by_torques = start.shares_beside(reading, size, name)
+                own, *others = (100 * x.mean() for x in by_torques.values())
                 shares += [f"{own:.0f}", " and ".join(f"{x:.0f}" for x in others)]
             rows.append((reading, f"±{size:g}", *shares))
     heads = "acceleration, %", "by unrelated torques", "velocity, %", "by unrelated torques"
@@ -119,14 +119,14 @@ def _inertias() -> Table:
     """The shoulder's inertia in networks, and in the arm, in the median."""
     rows = []
     for name, width in (("damped joints, window 21", 21), ("damped joints, window 11", 11)):
-        found = np.array(trial.row(width)["real"]["gains"])[:, 0, 0, 2]
-        rows.append((name, np.median(found), trial.arm_gains()[0, 0, 2]))
+        inertia = np.array(trial.row(width)["real"]["gains"])[:, 0, 0, 2]
+        rows.append((name, np.median(inertia), trial.arm_gains()[0, 0, 2]))
     lost = excitation.cell("state feedback", 1.0)
     cut = "the controller damps, first second cut"
     rows.append((cut, np.median(lost["descent"]["M11"][-1]), lost["arm"]))
     rows.append((f"{cut}, by a solver", np.median(lost["solver"]["M11"]), lost["arm"]))
     heads = "networks", "shoulder's inertia, kg m²", "the arm's"
-    return Table(heads, [(name, f"{found:.1f}", f"{own:.1f}") for name, found, own in rows])
+    return Table(heads, [(name, f"{median:.1f}", f"{own:.1f}") for name, median, own in rows])
 
 
 def _quoted() -> None:
@@ -193,15 +193,15 @@ def _said() -> None:
 
 def _sentences() -> Illustration:
     """The first figure: how many sentences have which word, and one of them each."""
-    found = of_kind("system")
-    counts = tally(found)
+    sentences = of_kind("system")
+    counts = tally(sentences)
     chosen = {}
     for word in counts:
-        those = [card for card in found if card.verdict() == word]
+        those = [card for card in sentences if card.verdict() == word]
         first = [card for card in those if card.id in _EXAMPLES]
         chosen[word] = typeset(([*first, *those] or [None])[0].says) if those else ""
 
-    best, under = next(iter(by_reading(found).items()))
+    best, under = next(iter(by_reading(sentences).items()))
 
     def draw(figure: Figure):
         axis, wide = figure.subplots(), figure.get_figwidth() > NARROW
@@ -225,10 +225,10 @@ def _sentences() -> Illustration:
         axis.tick_params(left=False)
         axis.grid(False)
 
-    told = "; ".join(
+    text = "; ".join(
         f"{n} {word}, {under[word]} with {best}, like: {chosen[word]}" for word, n in counts.items()
     )
-    alt = f"Sentences of the report by verdict. {told}."
+    alt = f"Sentences of the report by verdict. {text}."
     return illustrate(draw, alt, 7.2, 2.6, narrow_height=4.8)
 
 
@@ -244,12 +244,20 @@ def _chosen(ids: Iterable[str]) -> Table:
     """Some rows of the ledger: claim and its chapter, printed value, ours, verdict, reason."""
     known, rows = {claim.id: claim for claim in load()}, []
     for claim in (known[name] for name in ids):
-        width, found = window(claim), claim.here()
-        told = rf"(window|at) {width}\b|\b{width} samples"
-        if width and not re.search(told, f"{claim.claim} {found}"):
-            found += f" (window {width})"
+        width, ours = window(claim), claim.our_value()
+        pattern = rf"(window|at) {width}\b|\b{width} samples"
+        if width and not re.search(pattern, f"{claim.claim} {ours}"):
+            ours += f" (window {width})"
         sentence = f"{claim.claim} ({{doc}}`{home(claim)}`)"
-        rows.append((sentence, claim.as_printed(), found, worded(claim, claim.sure()), claim.why))
+        rows.append(
+            (
+                sentence,
+                claim.as_printed(),
+                ours,
+                worded(claim, claim.verdict_with_share()),
+                claim.why,
+            )
+        )
     header = ("claim", "printed", "here", "verdict", "why")
     return Table(header, [tuple(map(typeset, row)) for row in rows])
 
@@ -317,7 +325,7 @@ def _by_reading(sentences: Iterable[Claim]) -> list[dict[str, Claim]]:
     groups: dict[tuple, dict[str, Claim]] = {}
     for claim in sentences:
         if claim.is_measured:
-            key, setup = claim.but_for_reading()
+            key, setup = claim.key_and_setup()
             groups.setdefault(key, {})[setup] = claim
     return [group for group in groups.values() if len(group) > 1]
 
@@ -352,9 +360,9 @@ def changed_by_reading() -> Measured:
 
 def carried_over(arm: str) -> Measured:
     """Chance that shuffled verdicts agree as often as those on two arms do."""
-    found = _agreement(_pairs_on(arm))
-    text = f"{found.same} of {found.pairs} alike, {found.expected:.1f} by chance"
-    return Measured(found.chance, text)
+    agreement = _agreement(_pairs_on(arm))
+    text = f"{agreement.same} of {agreement.pairs} alike, {agreement.expected:.1f} by chance"
+    return Measured(agreement.chance, text)
 
 
 def _pairs_on(arm: str) -> list[tuple[str, str]]:
@@ -366,11 +374,11 @@ def _pairs_on(arm: str) -> list[tuple[str, str]]:
 def reproduced_share(reading: str = "every") -> Measured:
     """Share of the paper's sentences that are reproduced, under "every" reading or the "best"."""
     some = cards.of_kind("system", "methods")
-    name, found = f"{reading} reading", cards.tally(some)
+    name, by_word = f"{reading} reading", cards.tally(some)
     if reading == "best":
-        name, found = next(iter(cards.by_reading(some).items()))
-    count, total = found["reproduced"], sum(found.values())
-    return Measured(count / total, f"{count} of {total}, {name}")
+        name, by_word = next(iter(cards.by_reading(some).items()))
+    reproduced, total = by_word["reproduced"], sum(by_word.values())
+    return Measured(reproduced / total, f"{reproduced} of {total}, {name}")
 
 
 def show(name: str) -> Illustration | Table:
@@ -405,11 +413,13 @@ def _exercise(number: int, *given) -> Exercise:
         )
     elif number == 2:
         rough = {n: np.abs(np.diff(x, axis=-2)).mean() for n, x in given[0].items()}
-        told = "it has no more to do with the motion than noise has, and any smooth shape beats it."
+        reason = (
+            "it has no more to do with the motion than noise has, and any smooth shape beats it."
+        )
         return Exercise(
             "word",
             max(rough, key=rough.get),
-            told,
+            reason,
             [],
             "which of them could the motors not have made?",
             options=tuple(rough),

@@ -1,8 +1,8 @@
 """Controllers that adapt while they control: the ones that section 1.1 cites.
 
-`SlotineLi` and `_CraigHsuSastry` adapt base parameters and friction, in which the torque is linear.
+`SlotineLi` and `CraigHsuSastry` adapt base parameters and friction, in which the torque is linear.
 The first needs position and velocity only; the second needs the acceleration, too, and an estimated
-mass matrix that can be inverted. `_ModelReference` adapts the gains of each joint by itself. A law
+mass matrix that can be inverted. `ModelReference` adapts the gains of each joint by itself. A law
 that is started keeps its estimates: ``law.estimates`` after a run, ``law.estimate`` the last.
 Gains, rates and estimates may have leading axes, of runs.
 """
@@ -20,24 +20,24 @@ from ddlib.control.controllers import ControlLaw, Controller, as_controller
 from ddlib.dynamics import Arm
 from ddlib.trajectories import Trajectory
 
-_PARAMETERS = ("a", "b", "d", "g1", "g2", "F_v1", "F_v2", "F_c1", "F_c2")
+PARAMETERS = ("a", "b", "d", "g1", "g2", "F_v1", "F_v2", "F_c1", "F_c2")
 """What can be adapted: base parameters (kg m^2), gravity moments (N m), viscous (N m s/rad) and
 Coulomb (N m) friction of both joints."""
 
-_SIGN_SPEED = 0.02  # rad/s: below it Coulomb friction is taken for linear in the velocity
+_LINEAR_BELOW = 0.02  # rad/s: below it Coulomb friction is taken for linear in the velocity
 
 
-def mixed_regressor(q, qd, v, a, names: Sequence[str] = _PARAMETERS[:3]) -> np.ndarray:
+def mixed_regressor(q, qd, v, a, names: Sequence[str] = PARAMETERS[:3]) -> np.ndarray:
     """Matrix Y with ``Y @ parameters = M(q) a + C(q, qd) v + g(q) + friction(v)``.
 
     With ``v = qd`` and ``a = qdd`` it is `ddlib.dynamics.Arm.regressor` and friction. C is the
     matrix that makes ``dM/dt - 2 C`` skew-symmetric (`ddlib.dynamics.Arm.coriolis_matrix`).
     The form is that of Slotine & Li 1987, for two links; its shape is (..., 2, parameters), and
-    `names` are some of `_PARAMETERS`.
+    `names` are some of `PARAMETERS`.
     """
     pairs = zip(("q", "qd", "v", "a"), (q, qd, v, a))
     for name in names:
-        one_of("names", name, _PARAMETERS)
+        one_of("names", name, PARAMETERS)
     return _unchecked_regressor(*(finite_array(n, x, 2) for n, x in pairs), names)
 
 
@@ -63,7 +63,7 @@ def _unchecked_regressor(q, qd, v, a, names: Sequence[str]) -> np.ndarray:
         else:
             joint = int(name[-1]) - 1
             rate = v[..., joint]
-            own = rate if name.startswith("F_v") else np.clip(rate / _SIGN_SPEED, -1.0, 1.0)
+            own = rate if name.startswith("F_v") else np.clip(rate / _LINEAR_BELOW, -1.0, 1.0)
             Y[..., joint, k] = own
     return Y
 
@@ -143,7 +143,7 @@ class SlotineLi(_Adaptive):
     slope: tuple[float, float]  # how fast an error would die out on s = 0, 1/s
     rate: Sequence[float]  # (..., parameters), their unit per N m rad; 0: it is not adapted
     estimate: Sequence[float]  # (..., parameters): what the run begins with
-    names: Sequence[str] = _PARAMETERS[:3]
+    names: Sequence[str] = PARAMETERS[:3]
     at: str = "measured"  # or "desired": the state at which Y is taken
     dead_zone: tuple[float, float] = (0.0, 0.0)  # of s, rad/s: taken off, nothing is learnt within
     leakage: float = 0.0  # rate at which the estimate goes back to what the run began with, 1/s
@@ -158,10 +158,10 @@ class SlotineLi(_Adaptive):
         non_negative("dead_zone", self.dead_zone, 2)
         number("leakage", self.leakage, 0.0)
         for name in self.names:
-            one_of("names", name, _PARAMETERS)
-        count = f"(..., {len(self.names)})"
-        non_negative("rate", shaped("rate", self.rate, count))
-        shaped("estimate", self.estimate, count)
+            one_of("names", name, PARAMETERS)
+        shape = f"(..., {len(self.names)})"
+        non_negative("rate", shaped("rate", self.rate, shape))
+        shaped("estimate", self.estimate, shape)
 
     def output(self, estimate, wanted: Trajectory, q, qd) -> tuple[np.ndarray, np.ndarray]:
         """Torque ``(..., 2)`` and the estimate's rate of change per second, in continuous time.
@@ -203,7 +203,7 @@ _MARGIN = 0.9  # largest b as a share of that which makes the mass matrix singul
 
 
 @dataclass(frozen=True)
-class _CraigHsuSastry(_Adaptive):
+class CraigHsuSastry(_Adaptive):
     """Adaptive computed torque (Craig, Hsu & Sastry 1987): it needs the acceleration.
 
     The torque is ``M (qdd_ref + kd de/dt + kp e) + C qd + g + friction`` with the estimates, which
@@ -217,7 +217,7 @@ class _CraigHsuSastry(_Adaptive):
     estimate: Sequence[float]
     low: Sequence[float]  # the box of the estimates, with d above 0 and below a
     high: Sequence[float]
-    names: Sequence[str] = _PARAMETERS[:3]  # they begin with a, b, d
+    names: Sequence[str] = PARAMETERS[:3]  # they begin with a, b, d
     acceleration: Callable | None = None  # of q, qd and the torque held; default: by difference
     limit: Sequence[float] | None = None  # N m: nothing is learnt while the torque is larger
 
@@ -234,6 +234,7 @@ class _CraigHsuSastry(_Adaptive):
         return torque, np.asarray(self.rate) * np.einsum("...jp,...j->...p", measured, turned)
 
     def advance(self, law, estimate, wanted, q, qd):
+        """Torque and new estimate of a control sample, by the acceleration since the last one."""
         before, held = (qd, np.zeros(2)) if law.memory is None else law.memory
         if self.acceleration is None:
             qdd = (qd - before) / law.step
@@ -260,7 +261,7 @@ def _mass(estimate, q) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class _ModelReference(_Adaptive):
+class ModelReference(_Adaptive):
     """Gains of each joint by itself that adapt until it follows a linear model (Parks 1966).
 
     The model answers ``command = qdd_ref + a1 qd_ref + a0 q_ref`` with
@@ -278,6 +279,7 @@ class _ModelReference(_Adaptive):
     limit: Sequence[float] | None = None  # N m: nothing is learnt while the torque is larger
 
     def model(self, reference: Trajectory, step: float) -> Trajectory:
+        """The motion of the linear models that follow a reference, sampled."""
         a0, a1 = np.asarray(self.stiffness), np.asarray(self.damping)
         first = reference.q[..., :1, :]
         command = reference.qdd + a1 * reference.qd + a0 * (reference.q - first)
@@ -312,4 +314,5 @@ class _ModelReference(_Adaptive):
         return (phi * gains).sum(-1), change - drawn
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
+        """The law of one run, behind the models' motion."""
         return _RunningLaw(self, self.model(reference, step), step)

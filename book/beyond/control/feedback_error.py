@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from beyond.control.adaptive import _PARAMETERS, mixed_regressor
+from beyond.control.adaptive import PARAMETERS, mixed_regressor
 from ddlib._check import finite_array, integer, non_negative, number, shaped
 from ddlib.control.controllers import ControlLaw, Controller, as_controller
 from ddlib.trajectories import Trajectory
@@ -22,10 +22,10 @@ from ddlib.trajectories import Trajectory
 class RigidBodyTerms:
     """The regressor's columns and friction: terms that can represent the arm exactly.
 
-    `names` are those of `beyond.control.adaptive._PARAMETERS`.
+    `names` are those of `beyond.control.adaptive.PARAMETERS`.
     """
 
-    names: Sequence[str] = _PARAMETERS[:3]
+    names: Sequence[str] = PARAMETERS[:3]
 
     def __call__(self, q, qd, qdd) -> np.ndarray:
         """Terms of each joint along a motion, shape (..., 2, terms)."""

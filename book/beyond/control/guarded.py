@@ -15,7 +15,7 @@ _SPEEDS = (20.0, 20.0)  # rad/s: several times what the family of Appendix I ask
 
 
 @dataclass(frozen=True)
-class _Guarded:
+class Guarded:
     """Switches the motors off where the arm leaves its limits; a learner inside sees the plan."""
 
     controller: Controller
@@ -23,6 +23,7 @@ class _Guarded:
     speeds: tuple[float, float] = _SPEEDS
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
+        """The law of one run, guarded."""
         return _Law(self, reference, step)
 
 
@@ -45,7 +46,7 @@ class _Stops:
 
 
 class _Law:
-    def __init__(self, guard: _Guarded, reference: Trajectory, step: float):
+    def __init__(self, guard: Guarded, reference: Trajectory, step: float):
         self._reference, self._step = reference, step
         self._limits = np.concatenate([guard.angles, guard.speeds]).astype(float)
         self._reason = np.zeros((), int)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beyond.control.windowed import _reference_windows
+from beyond.control.windowed import reference_windows
 from ddlib._check import integer, non_negative, number, one_of
 from ddlib.control.controllers import ControlLaw, Controller, as_controller
 from ddlib.trajectories import Trajectory
@@ -71,14 +71,14 @@ class _OnlineNetwork:
         o = self.activity(features)
         error = self.scaled(torque) - o if error is None else error * self.outputs.gain
         delta = error * o * (1 - o)
-        count, units = delta.shape[-2], self.hidden.shape[-2]
+        cases, units = delta.shape[-2], self.hidden.shape[-2]
         h = features[..., :units]
         back = delta @ self.output[..., :units] * h * (1 - h)
         back, delta = np.swapaxes(back, -1, -2), np.swapaxes(delta, -1, -2)
-        return back @ seen / count, delta @ features / count
+        return back @ seen / cases, delta @ features / cases
 
 
-class _OnlineDescent(_OnlineNetwork):
+class OnlineDescent(_OnlineNetwork):
     """All weights learn by gradient descent, a step for each sample."""
 
     def __init__(
@@ -97,6 +97,7 @@ class _OnlineDescent(_OnlineNetwork):
         self._rng, self._kept, self._steps = np.random.default_rng(seed), [], (0.0, 0.0)
 
     def learn(self, windows, torque) -> None:
+        """A step from the newest windows and from some that are kept."""
         cases = [(windows, torque)]
         if self.replay:
             drawn = self._rng.integers(0, len(self._kept), self.replay) if self._kept else ()
@@ -135,7 +136,7 @@ class LastLayer(_OnlineNetwork):
         self.output = self.estimate.weights
 
 
-class _LinearFilter:
+class LinearFilter:
     """A linear filter of scaled windows, without hidden units, by recursive least squares."""
 
     def __init__(self, inputs, weights, recursion):
@@ -155,6 +156,7 @@ class _LinearFilter:
         return self._features(windows) @ np.swapaxes(self.weights, -1, -2)
 
     def learn(self, windows, torque) -> None:
+        """Update the least squares by windows and the torque at their centres."""
         self.estimate.update(self._features(windows), torque)
         self.weights = self.estimate.weights
 
@@ -194,7 +196,7 @@ class _Law:
         moving = (reference.qd != 0) | (reference.qdd != 0)
         self._moving = moving.any(axis=(*range(moving.ndim - 2), -1))
         self._half, self._read, self._applied = half, [], []
-        self._windows = _reference_windows(reference.q, controller.width, self._every)
+        self._windows = reference_windows(reference.q, controller.width, self._every)
         if self._teacher == "nobody":
             self._ahead = learner.torque(self._windows)
 
@@ -223,18 +225,19 @@ class _Law:
 
 
 @dataclass(frozen=True)
-class _Abreast:
+class Abreast:
     """Several controllers in one batch, each for so many rows of the first axis of runs."""
 
     controllers: Sequence[Controller]
     rows: Sequence[int]
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
+        """The laws of one run, each for its own rows."""
         return _AbreastLaw(self, reference, step)
 
 
 class _AbreastLaw:
-    def __init__(self, controller: _Abreast, reference: Trajectory, step: float):
+    def __init__(self, controller: Abreast, reference: Trajectory, step: float):
         ends = np.cumsum(controller.rows)
         self._parts = [slice(end - n, end) for end, n in zip(ends, controller.rows)]
         self.laws = [

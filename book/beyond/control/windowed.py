@@ -19,7 +19,7 @@ from ddlib.trajectories import Trajectory
 _BETWEEN = ("window", "line", "hold")
 
 
-def _reference_windows(q, width: int, every: int) -> np.ndarray:
+def reference_windows(q, width: int, every: int) -> np.ndarray:
     """Windows around a reference's samples, ``(..., time, joint, width)``; it rests outside."""
     reach = width // 2 * every
     ends = [np.repeat(q[..., end, :], reach, -2) for end in (slice(1), slice(-1, None))]
@@ -65,8 +65,8 @@ class WindowFeedforward:
         q = shaped("q", q, "(..., time, joint)")
         time = q.shape[-2]
         stride = 1 if self.between == "window" else self.every
-        late = np.repeat(q[..., -1:, :], stride - 1, -2)  # a window after the end, too
-        windows = _reference_windows(np.concatenate([q, late], -2), self.width, self.every)
+        at_rest = np.repeat(q[..., -1:, :], stride - 1, -2)  # a window after the end, too
+        windows = reference_windows(np.concatenate([q, at_rest], -2), self.width, self.every)
         windows = windows[..., ::stride, :, :]
         centres = windows.shape[-3]
         cases = windows.reshape(-1, *windows.shape[-2:])
@@ -101,7 +101,7 @@ class PlannedTorque:
 
 
 @dataclass(frozen=True)
-class _MeasuredWindows:
+class MeasuredWindows:
     """A model of windows inside the loop: what has been is measured, what is to come is desired.
 
     So much of the measured deviation as `share` says is put into the windows; its axes are runs.
@@ -112,45 +112,51 @@ class _MeasuredWindows:
     share: float | np.ndarray = 1.0
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
-        made = self.feedforward
-        made.check(step)
+        """The law of one run: feedback, and the model's torque for measured windows."""
+        feedforward = self.feedforward
+        feedforward.check(step)
         feedback = as_controller(self.feedback).start(reference, step)
-        half, share = made.width // 2, np.asarray(self.share, float)[..., None, None]
-        taps = made.every * np.arange(-half, half + 1)
+        half, share = feedforward.width // 2, np.asarray(self.share, float)[..., None, None]
+        taps = feedforward.every * np.arange(-half, half + 1)
         last = reference.q.shape[-2] - 1
-        kept: list[np.ndarray] = []  # deviations, newest last; before the first sample none
+        deviations: list[np.ndarray] = []  # deviations, newest last; before the first sample none
 
         def law(k, q, qd):
-            kept.append(q - reference.q[..., k, :])
-            del kept[: -(made.every * half + 1)]
+            deviations.append(q - reference.q[..., k, :])
+            del deviations[: -(feedforward.every * half + 1)]
             windows = np.moveaxis(reference.q[..., np.clip(k + taps, 0, last), :], -1, -2)
-            past = [kept[t - 1] if -t < len(kept) else 0 * kept[-1] for t in taps[: half + 1]]
+            past = [
+                deviations[t - 1] if -t < len(deviations) else 0 * deviations[-1]
+                for t in taps[: half + 1]
+            ]
             past = share * np.stack(np.broadcast_arrays(*past), -1)
-            windows = np.broadcast_to(windows, (*past.shape[:-1], made.width)).copy()
+            windows = np.broadcast_to(windows, (*past.shape[:-1], feedforward.width)).copy()
             windows[..., : half + 1] += past
             cases = windows.reshape(-1, *windows.shape[-2:])
-            torque = shaped("model(windows)", made.model(cases), f"({len(cases)}, {q.shape[-1]})")
+            torque = shaped(
+                "model(windows)", feedforward.model(cases), f"({len(cases)}, {q.shape[-1]})"
+            )
             return torque.reshape(windows.shape[:-1]) + feedback(k, q, qd)
 
         return law
 
 
-def _past_slopes(model: Callable, windows, step: float = 1e-5) -> np.ndarray:
+def past_slopes(model: Callable, windows, step: float = 1e-5) -> np.ndarray:
     """Mean slopes of a model's torque by past samples, N m/rad: (torque, joint, width // 2 + 1)."""
     joints, width = windows.shape[1:]
-    found = np.empty((joints, joints, width // 2 + 1))
-    for joint, tap in np.ndindex(*found.shape[1:]):
+    slopes = np.empty((joints, joints, width // 2 + 1))
+    for joint, tap in np.ndindex(*slopes.shape[1:]):
         shift = np.zeros((joints, width))
         shift[joint, tap] = step
         change = np.asarray(model(windows + shift)) - model(windows - shift)
-        found[:, joint, tap] = change.mean(0) / (2 * step)
-    return found
+        slopes[:, joint, tap] = change.mean(0) / (2 * step)
+    return slopes
 
 
-def _poles_inside(
+def poles_inside(
     joints: control.StateSpace, feedback: PID, past, period: float, every: int = 5, late: int = 0
 ) -> np.ndarray:
-    """Poles of a sampled loop with a linear model of these slopes (`_past_slopes`) inside."""
+    """Poles of a sampled loop with a linear model of these slopes (`past_slopes`) inside."""
     n = joints.ninputs
     sampled = control.sample_system(joints, period, "zoh")
     ages = late + every * np.arange(past.shape[-1])[::-1]  # of the samples, oldest first

@@ -19,8 +19,8 @@ def row(rival: str, inputs: str = "positions", size=None) -> dict:
     if not rows:
         raise ValueError(f"rival must be one of the study, got {rival!r}, {inputs!r}, {size!r}")
     within = [r for r in rows if r["count"] <= study["budget"]]
-    count = itemgetter("count")
-    return max(within, key=count) if within else min(rows, key=count)
+    by_count = itemgetter("count")
+    return max(within, key=by_count) if within else min(rows, key=by_count)
 
 
 def better(part: str = "trajectory 6") -> Measured:

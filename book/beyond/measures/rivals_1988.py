@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from beyond.rivals.tables import table_size
-from beyond.studies.rivals_1988 import _KINDS, _practised_distance
+from beyond.studies.rivals_1988 import KINDS, practised_distance
 from ddlib import paper
 from ddlib.learning import Weights
 from ddlib.tables import significant, spread
@@ -34,8 +34,8 @@ def row(name: str, **wanted) -> dict:
 
 def around(over: str) -> np.ndarray:
     """Errors of what learnt one trajectory, by day and by distance from it."""
-    errors = np.array(results.read("rivals-tables")["around"][_KINDS[1]][over]["errors"])
-    far = _practised_distance()
+    errors = np.array(results.read("rivals-tables")["around"][KINDS[1]][over]["errors"])
+    far = practised_distance()
     return np.stack([np.median(errors[:, far == d], axis=1) for d in (0, 5, 10, 15, 20)], 1)
 
 
@@ -99,7 +99,7 @@ def hashing_saves() -> Measured:
     """Slots over cubes visited that suffice: half as much error again, on practised motions."""
     rows = hashed_rows()
     shape = {name: rows[0][name] for name in ("layers", "width")}
-    free = row("rivals-cmac", kind=_KINDS[1], slots=None, **shape)
+    free = row("rivals-cmac", kind=KINDS[1], slots=None, **shape)
     level = 1.5 * np.median(free["again"])
     enough = [r for r in rows if not any(r["diverged"]) and np.median(r["again"]) <= level]
     slots, visited = enough[0]["slots"], np.median(free["visited"])
@@ -109,14 +109,14 @@ def hashing_saves() -> Measured:
 # --- polynomials and Fourier series -----------------------------------------------------------
 
 
-def basis(name: str, order: int, ridge: float = 0.0, kind: str = _KINDS[1]) -> dict:
+def basis(name: str, order: int, ridge: float = 0.0, kind: str = KINDS[1]) -> dict:
     """Errors of a polynomial or a Fourier series by day: lists under the names of the sets."""
     return row("rivals-bases", kind=kind, basis=name, order=order, ridge=ridge)
 
 
 def orders(name: str) -> list[int]:
     """Degrees or orders that were tried."""
-    return sorted({row["order"] for row in _rows("rivals-bases", basis=name, kind=_KINDS[1])})
+    return sorted({row["order"] for row in _rows("rivals-bases", basis=name, kind=KINDS[1])})
 
 
 def _chosen(name: str, where: str) -> np.ndarray:
@@ -141,7 +141,7 @@ def medium() -> Measured:
 def penalty() -> Measured:
     """Error outside the hull of the highest degree without penalty over that with the best one."""
     degree = orders("chebyshev")[-1]
-    rows = _rows("rivals-bases", kind=_KINDS[1], basis="chebyshev", order=degree)
+    rows = _rows("rivals-bases", kind=KINDS[1], basis="chebyshev", order=degree)
     free = next(np.array(row["outside"]) for row in rows if row["ridge"] == 0)
     best = min((np.array(row["outside"]) for row in rows if row["ridge"]), key=np.median)
     text = f"{significant(np.median(free), 2)} without, {significant(np.median(best), 2)} with"
@@ -156,7 +156,7 @@ def good(name: str = "chebyshev") -> Measured:
 
 def coefficients() -> Measured:
     """Numbers in the smallest polynomial as good as the network on trajectory 6, over its own."""
-    rows = _rows("rivals-bases", kind=_KINDS[1], ridge=0)
+    rows = _rows("rivals-bases", kind=KINDS[1], ridge=0)
     enough = [row["count"] for row in rows if np.median(row["trajectory 6"]) <= PRINTED]
-    least = min(int(np.median(count)) for count in enough)
+    least = min(int(np.median(numbers)) for numbers in enough)
     return Measured(least / STORED, f"{least} for {STORED}")

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 from numpy.polynomial.polynomial import polyvander
 
-from beyond.rivals.protocol import Rival, _NotFitted
+from beyond.rivals.protocol import NotFitted, Rival
 from ddlib._check import integer, number, one_of, shaped
 from ddlib.dynamics import Operations
 
@@ -73,9 +73,9 @@ class _Solution(NamedTuple):
 
     def coefficients(self, ridge: float = 0.0) -> np.ndarray:
         """Least mean squared error plus `ridge` times squared coefficients; for 0 the shortest."""
-        kept = self.sizes > self.floor
-        factor = self.sizes[kept] / (self.sizes[kept] ** 2 + ridge)
-        return self.directions[kept].T @ (factor[:, None] * self.seen[kept])
+        large = self.sizes > self.floor
+        factor = self.sizes[large] / (self.sizes[large] ** 2 + ridge)
+        return self.directions[large].T @ (factor[:, None] * self.seen[large])
 
 
 class _Basis(Rival):
@@ -99,7 +99,7 @@ class _Basis(Rival):
     def with_ridge(self, ridge: float) -> _Basis:
         """The same fitted rival with another penalty, at nearly no cost."""
         if not hasattr(self, "coefficients"):
-            raise _NotFitted(f"{self!r} has learnt nothing: call fit first")
+            raise NotFitted(f"{self!r} has learnt nothing: call fit first")
         other = copy(self)
         other.ridge = number("ridge", ridge, 0.0)
         other.coefficients = self._solution.coefficients(ridge)
@@ -147,15 +147,15 @@ class Polynomial(_Basis):
         terms, joints = self.coefficients.shape
         variables = self.exponents.shape[1]
         double = self.kind_of == "chebyshev"  # T_k = 2 u T_(k-1) - T_(k-2)
-        made = variables * max(self.degree - 1, 0)
+        powers = variables * max(self.degree - 1, 0)
         joined = int((self.exponents > 0).sum(1).clip(min=1).sum()) - terms
         return Operations(
-            variables * (1 + double) + made + joined + terms * joints,
-            variables + double * made + terms * joints,
+            variables * (1 + double) + powers + joined + terms * joints,
+            variables + double * powers + terms * joints,
         )
 
 
-class _Fourier(_Basis):
+class Fourier(_Basis):
     """A Fourier series of the state; `period` of the longest wave is in edges of the box."""
 
     def __init__(self, order: int = 2, period: float = 2.0, ridge: float = 0.0):
@@ -171,6 +171,7 @@ class _Fourier(_Basis):
         return np.concatenate([np.ones((len(u), 1)), np.cos(angle), np.sin(angle)], 1)
 
     def operations(self):
+        """Operations for one torque of all joints."""
         (waves, variables), (terms, joints) = self.waves.shape, self.coefficients.shape
         steps = int(np.abs(self.waves).sum()) - waves  # sums of the scaled axes
         return Operations(

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import sparse
 from scipy.linalg import solve_triangular
 
-from beyond.rivals.tables import _Bounded
+from beyond.rivals.tables import Bounded
 from ddlib._check import integer, number
 from ddlib.dynamics import Operations
 
@@ -14,11 +14,11 @@ _BLOCK = 300  # cases whose updates are solved at once, by one triangular system
 _WORSE = 1e3  # a training error that has grown this many times has diverged
 
 
-class _Diverged(RuntimeError):
+class Diverged(RuntimeError):
     """The delta rule ran away; the error before each pass is kept in `CMAC.history`."""
 
 
-class CMAC(_Bounded):
+class CMAC(Bounded):
     """A cerebellar model articulation controller (Albus 1975; Miller, Glanz & Kraft 1987).
 
     Each of `layers` layers cuts the box of states into cubes of the same width, and each is
@@ -30,7 +30,7 @@ class CMAC(_Bounded):
     ``rate * (torque - sum) / layers`` to every weight of the sum. With weights `slots` fewer than
     cubes, cubes get their weight by a hash of their number, and some share one: they collide.
     An update is a step of Kaczmarz's method: it lands nearer to every solution as long as
-    ``rate * overlap < 2``, and else `fit` may raise `_Diverged`.
+    ``rate * overlap < 2``, and else `fit` may raise `Diverged`.
     """
 
     def __init__(
@@ -55,9 +55,9 @@ class CMAC(_Bounded):
         rows = self._rows(cubes)
         visited = self.known
         slot = np.arange(len(visited)) if self.slots is None else _hashed(visited, self.slots)
-        _, where, count = np.unique(slot, return_inverse=True, return_counts=True)
-        self.visited, self.occupied = len(visited), len(count)  # cubes, and weights that are theirs
-        self.sharing = float((count[where] > 1).mean())  # of the visited cubes
+        _, where, users = np.unique(slot, return_inverse=True, return_counts=True)
+        self.visited, self.occupied = len(visited), len(users)  # cubes, and weights that are theirs
+        self.sharing = float((users[where] > 1).mean())  # of the visited cubes
         # largest squared length of a case's row: 1 if all its cubes have weights of their own
         self.overlap = float(rows.power(2).sum(1).max() / self.layers)
         self.weights = np.zeros((rows.shape[1], torque.shape[1]))
@@ -79,7 +79,7 @@ class CMAC(_Bounded):
         for epoch in range(self.epochs + 1):
             self.history.append(_error(rows @ self.weights - torque, deviation))
             if not self.history[-1] < _WORSE * self.history[0] + 1e-300:
-                raise _Diverged(
+                raise Diverged(
                     f"{self!r} diverges: after {epoch} passes the error is {self.history[-1]:.3g} "
                     f"deviations of the torque; rate x overlap is {self.rate * self.overlap:.3g}, "
                     f"which must be below 2: take more slots than {self.slots} or a lower rate"
@@ -134,8 +134,8 @@ class CMAC(_Bounded):
 
 def _error(left, deviation) -> float:
     """Root mean square of what is left, in deviations; infinite if it is no number."""
-    found = np.sqrt(np.mean((left / deviation) ** 2))
-    return float(found) if np.isfinite(found) else np.inf
+    error = np.sqrt(np.mean((left / deviation) ** 2))
+    return float(error) if np.isfinite(error) else np.inf
 
 
 def _hashed(numbers, slots: int) -> np.ndarray:

@@ -17,7 +17,7 @@ from sklearn.kernel_approximation import RBFSampler
 from sklearn.linear_model import RidgeCV
 
 from beyond.rivals.identified import Identified
-from beyond.rivals.protocol import _KINDS, Rival
+from beyond.rivals.protocol import INPUTS, Rival
 from ddlib._check import integer, one_of, positive, seed_number
 from ddlib.dynamics import Operations
 from ddlib.identification import FRICTION, GRAVITY, RIGID
@@ -36,11 +36,11 @@ class _Inputs:
             spread = flat.std(0)
             self.matrix = np.diag(1 / np.where(spread > 0, spread, 1.0))
         else:
-            kept = integer("directions", directions, 1, min(flat.shape))
+            number = integer("directions", directions, 1, min(flat.shape))
             _, size, basis = np.linalg.svd(flat - self.mean, full_matrices=False)
-            if not size[kept - 1] > 0:
-                raise ValueError(f"directions must be at most {(size > 0).sum()}, got {kept}")
-            self.matrix = basis[:kept].T * (np.sqrt(len(x)) / size[:kept])
+            if not size[number - 1] > 0:
+                raise ValueError(f"directions must be at most {(size > 0).sum()}, got {number}")
+            self.matrix = basis[:number].T * (np.sqrt(len(x)) / size[:number])
         self.diagonal = directions is None
 
     def __call__(self, x) -> np.ndarray:
@@ -74,7 +74,7 @@ class GaussianProcess(Rival):
         restarts: int = 1,  # further searches, from random starts
         seed: int = 0,
     ):
-        self.kind = one_of("kind", kind, _KINDS)
+        self.kind = one_of("kind", kind, INPUTS)
         self.directions = directions
         self.subset = integer("subset", subset, 2)
         self.restarts = integer("restarts", restarts, 0)
@@ -99,8 +99,8 @@ class GaussianProcess(Rival):
         )
         with warnings.catch_warnings():  # a length at its bound: the feature does not matter
             warnings.simplefilter("ignore", ConvergenceWarning)
-            found = search.fit(features[some], y[some]).kernel_
-        return GaussianProcessRegressor(found, optimizer=None).fit(features, y)
+            fitted = search.fit(features[some], y[some]).kernel_
+        return GaussianProcessRegressor(fitted, optimizer=None).fit(features, y)
 
     def _torque(self, x):
         features = self.inputs(x)
@@ -146,7 +146,7 @@ class GaussianProcess(Rival):
         )
 
 
-class _SemiParametric(Rival):
+class SemiParametric(Rival):
     """The arm's equations, and Gaussian processes for the rest (Nguyen-Tuong & Peters 2010)."""
 
     def __init__(self, names: Sequence[str] = (*RIGID, *GRAVITY, *FRICTION), **options):
@@ -174,9 +174,11 @@ class _SemiParametric(Rival):
         return np.zeros(x.shape[:2]) if self.exact else self.rest._deviation(x)
 
     def count(self):
+        """Stored numbers of the equations and of the processes."""
         return self.known.count() + (0 if self.exact else self.rest.count())
 
     def operations(self):
+        """Operations of the equations, of the processes, and to add both."""
         own = self.known.operations()
         if self.exact:
             return own
@@ -184,7 +186,7 @@ class _SemiParametric(Rival):
         return both._replace(additions=both.additions + 2)
 
 
-class _RandomFeatures(Rival):
+class RandomFeatures(Rival):
     """Ridge regression on random cosines of the inputs (Rahimi & Recht 2007)."""
 
     PENALTIES = tuple(np.logspace(-10, 2, 13))
@@ -198,7 +200,7 @@ class _RandomFeatures(Rival):
         lengths: Sequence[float] = (1.0, 2.0, 4.0, 8.0, 16.0),  # to try, of standardised inputs
         seed: int = 0,
     ):
-        self.kind = one_of("kind", kind, _KINDS)
+        self.kind = one_of("kind", kind, INPUTS)
         self.features = integer("features", features, 1)
         self.directions = directions
         self.lengths = tuple(positive("lengths", lengths, "(lengths,)"))
@@ -209,24 +211,26 @@ class _RandomFeatures(Rival):
         self.level, self.unit = torque.mean(0), torque.std(0)
         self.unit = np.where(self.unit > 0, self.unit, 1.0)
         z, target = self.inputs(x), (torque - self.level) / self.unit
-        found = []
+        candidates = []
         for length in self.lengths:
             cosines = RBFSampler(
                 gamma=0.5 / length**2, n_components=self.features, random_state=self.seed
             ).fit(z)
             ridge = RidgeCV(self.PENALTIES, alpha_per_target=True).fit(cosines.transform(z), target)
-            found.append((float(np.sum(ridge.best_score_)), length, cosines, ridge))
-        _, self.length, self.cosines, self.ridge = max(found, key=lambda each: each[0])
+            candidates.append((float(np.sum(ridge.best_score_)), length, cosines, ridge))
+        _, self.length, self.cosines, self.ridge = max(candidates, key=lambda each: each[0])
 
     def _torque(self, x):
-        found = self.ridge.predict(self.cosines.transform(self.inputs(x)))
-        return self.level + self.unit * found.reshape(len(x), -1)
+        scaled = self.ridge.predict(self.cosines.transform(self.inputs(x)))
+        return self.level + self.unit * scaled.reshape(len(x), -1)
 
     def count(self):
+        """Stored numbers: of the inputs, the cosines, and their factors."""
         inputs, joints = self.inputs.matrix.shape[1], len(self.level)
         return self.inputs.count() + self.features * (inputs + 1 + joints) + 3 * joints
 
     def operations(self):
+        """Operations for one torque of all joints."""
         inputs, joints, own = self.inputs.matrix.shape[1], len(self.level), self.inputs.operations()
         return Operations(
             own.multiplications + self.features * (inputs + joints),
@@ -238,7 +242,7 @@ class _RandomFeatures(Rival):
 
 def _ascend(objective, start, bounds):
     """Search of hyperparameters, cut off after `_STEPS` iterations."""
-    found = minimize(
+    optimum = minimize(
         objective, start, method="L-BFGS-B", jac=True, bounds=bounds, options={"maxiter": _STEPS}
     )
-    return found.x, found.fun
+    return optimum.x, optimum.fun

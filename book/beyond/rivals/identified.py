@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from beyond.rivals.protocol import _KINDS, Rival, _derivative_filters
+from beyond.rivals.protocol import INPUTS, Rival, derivative_filters
 from ddlib._check import integer, number, one_of
 from ddlib.dynamics import Operations, Tape
 from ddlib.identification import FRICTION, GRAVITY, RIGID, SIGN_SPEED, from_states, least_squares
@@ -92,7 +92,7 @@ class Linear(Rival):
     """
 
     def __init__(self, kind="windows", width=None, ridge=None, blocks=5):
-        self.kind = one_of("kind", kind, _KINDS)
+        self.kind = one_of("kind", kind, INPUTS)
         self.width = None if width is None else check_width(width)
         self.ridge = None if ridge is None else number("ridge", ridge, 0.0)
         self.blocks = integer("blocks", blocks, 2)
@@ -133,7 +133,7 @@ class Linear(Rival):
         return Operations(self.matrix.size, self.matrix.size)
 
 
-class _Rubbing(Linear):
+class LinearWithSigns(Linear):
     """The linear filter, with a saturated velocity of each joint beside it; no inertia is known."""
 
     def __init__(self, saturates: float, ridge: float, degree: int):
@@ -141,10 +141,11 @@ class _Rubbing(Linear):
         self.saturates, self.degree = saturates, degree  # rad/s; of the polynomial
 
     def _rows(self, x):
-        speed = x @ _derivative_filters(x.shape[-1], self.step, self.degree)[1]
+        speed = x @ derivative_filters(x.shape[-1], self.step, self.degree)[1]
         return np.concatenate([super()._rows(x), np.tanh(speed / self.saturates)], 1)
 
     def count(self):
+        """Stored numbers, with those of the filter for the velocity."""
         return super().count() + self._used.stop  # and the filter for velocity
 
 

@@ -15,14 +15,14 @@ import torch
 from torch import nn
 from torch.nn import functional
 
-from beyond.rivals.protocol import Rival, _NotFitted
+from beyond.rivals.protocol import NotFitted, Rival
 from ddlib._check import finite_array, integer, number, one_of, seed_number
 from ddlib.dynamics import Operations
 from ddlib.identification import SIGN_SPEED
 
 _GRAVITIES = ("potential", "vector", "none")
 _DIAGONALS = ("softplus", "relu")
-_AS_PUBLISHED = {  # options like those of the public code; there 10,000 epochs follow
+AS_PUBLISHED = {  # options like those of the public code; there 10,000 epochs follow
     "hidden": (64, 64),
     "gravity": "potential",
     "diagonal": "relu",
@@ -106,19 +106,24 @@ class _Energies(nn.Module):
             size, rate = functional.relu(a), (a > 0).to(a)
         values = torch.cat([size, rest], 1)
         changes = torch.cat([rate * d[..., :joints], d[..., joints : self.triangle]], -1)
-        lower, moved = (
+        lower, lower_slopes = (
             (v @ self.places).unflatten(-1, (joints, joints)) for v in (values, changes)
         )
         if self.gravity == "potential":
-            return lower, moved, d[..., -1].T, out[:, -1]
-        return lower, moved, out[:, self.triangle :] if self.gravity == "vector" else None, None
+            return lower, lower_slopes, d[..., -1].T, out[:, -1]
+        return (
+            lower,
+            lower_slopes,
+            out[:, self.triangle :] if self.gravity == "vector" else None,
+            None,
+        )
 
 
 class LagrangianNetwork(Rival):
     """A Deep Lagrangian Network, trained on states and torques.
 
     Adam on minibatches with squared weights as penalty, then, if asked for, L-BFGS in double
-    precision on all cases. `_AS_PUBLISHED` has the settings of the public code; the defaults differ
+    precision on all cases. `AS_PUBLISHED` has the settings of the public code; the defaults differ
     in scaled units, a larger step that falls to zero along half a cosine, and a smooth diagonal.
     """
 
@@ -223,11 +228,11 @@ class LagrangianNetwork(Rival):
 
     def _dynamics(self, q, qd, qdd, sign):
         slope = torch.tensor(1 / self.units.spread).to(q)
-        lower, moved, gravity, _ = self.network(q, slope)
+        lower, lower_slopes, gravity, _ = self.network(q, slope)
         along, pushed = _across(lower, qd), _across(lower, qdd)
-        turned = _across(moved, qd)  # dL_k' qd, (k, n, joint)
+        turned = _across(lower_slopes, qd)  # dL_k' qd, (k, n, joint)
         speed = qd.T[:, :, None]
-        rate = (moved * speed[..., None]).sum(0)  # dL/dt
+        rate = (lower_slopes * speed[..., None]).sum(0)  # dL/dt
         torque = _times(lower, pushed + (turned * speed).sum(0)) + _times(rate, along)
         torque = torque - (turned * along).sum(-1).T + self.floor * qdd
         if gravity is not None:
@@ -244,13 +249,13 @@ class LagrangianNetwork(Rival):
     def _parts(self, q):
         """Triangle, its derivatives by position, gravity and potential, in scaled units."""
         if not hasattr(self, "network"):
-            raise _NotFitted(f"{self!r} has learnt nothing: call fit first")
+            raise NotFitted(f"{self!r} has learnt nothing: call fit first")
         q = finite_array("q", q, self.network.joints)
         flat = (q.reshape(-1, q.shape[-1]) - self.units.mean) / self.units.spread
         position = torch.tensor(flat).to(self.network.places)
         with torch.no_grad():
-            found = self.network(position, torch.tensor(1 / self.units.spread).to(position))
-        return q.shape[:-1], [None if f is None else f.double().numpy() for f in found]
+            parts = self.network(position, torch.tensor(1 / self.units.spread).to(position))
+        return q.shape[:-1], [None if f is None else f.double().numpy() for f in parts]
 
     def triangle(self, q) -> np.ndarray:
         """L(q), ``(..., joint, joint)``, in the network's units."""
@@ -267,8 +272,8 @@ class LagrangianNetwork(Rival):
         """Potential that was learnt, but for a constant, shape ``(...)``, J."""
         if self.gravity_from != "potential":
             raise ValueError(f"gravity must be 'potential', got {self.gravity_from!r}")
-        lead, (*_, found) = self._parts(q)
-        return self.units.torque * found.reshape(lead)
+        lead, (*_, potential) = self._parts(q)
+        return self.units.torque * potential.reshape(lead)
 
     def count(self):
         """Stored numbers: the weights, and the units if scaled."""

@@ -10,7 +10,7 @@ import numpy as np
 import torch
 from torch import nn
 
-from beyond.rivals.protocol import _KINDS, Rival
+from beyond.rivals.protocol import INPUTS, Rival
 from ddlib._check import integer, number, one_of, seed_number
 from ddlib.dynamics import Operations
 from ddlib.learning import (
@@ -33,7 +33,7 @@ class _Network(Rival):
     def __init__(
         self, hidden=HIDDEN_UNITS, kind="windows", *, initial=INITIAL, scaling=(0.0, 1.0), seed=0
     ):
-        self.kind, self.hidden = one_of("kind", kind, _KINDS), integer("hidden", hidden, 1)
+        self.kind, self.hidden = one_of("kind", kind, INPUTS), integer("hidden", hidden, 1)
         self.initial = number("initial", initial, 0.0, open_low=True)
         self.scaling, self.seed = scaling, seed_number("seed", seed)
 
@@ -73,7 +73,7 @@ class _Network(Rival):
         return Operations(each + outputs, each + units + outputs, units, units)
 
 
-class _ByDescent(_Network):
+class ByDescent(_Network):
     """The network by batch descent with momentum, as `ddlib.learning.train_ensemble`."""
 
     def __init__(
@@ -105,13 +105,13 @@ class BySolver(_Network):
     def _train(self, data):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", NotConverged)  # the number of steps is the setting
-            found = solve(
+            solution = solve(
                 self._start(data)[0], data, steps=self.steps, decay=self.decay, progress=False
             )
-        return found.model
+        return solution.model
 
 
-class _ByAdam(_Network):
+class ByAdam(_Network):
     """The network by Adam with decoupled weight decay, all cases at once, inputs from -1 to 1."""
 
     def __init__(self, hidden=HIDDEN_UNITS, epochs=3000, *, rate=0.02, decay=0.01, **options):
@@ -196,15 +196,15 @@ class _Sequence(Rival):
 
     def _torque(self, x):
         with torch.no_grad():
-            found = self.network(torch.tensor(self._channels(x), dtype=torch.float32))
-        return self.offset + self.spread * found.numpy().astype(float)
+            output = self.network(torch.tensor(self._channels(x), dtype=torch.float32))
+        return self.offset + self.spread * output.numpy().astype(float)
 
     def count(self):
         numbers = sum(p.numel() for p in self.network.parameters())
         return numbers + 4 * len(self.scale[0][0]) + 2 * self.offset.size
 
 
-class _Convolution(_Sequence):
+class Convolution(_Sequence):
     """Two layers of convolutions along the window, then a linear one over all that is left."""
 
     TAPS = 5  # samples that a filter sees
@@ -226,6 +226,7 @@ class _Convolution(_Sequence):
         )
 
     def operations(self):
+        """Operations for one window."""
         products = units = 0
         length = self._shape[1]
         for layer in self.network:
@@ -237,7 +238,7 @@ class _Convolution(_Sequence):
         return Operations(products + units, products + units, units, units)
 
 
-class _Recurrent(_Sequence):
+class Recurrent(_Sequence):
     """A gated recurrent unit that reads the window; its last state gives the torques."""
 
     def __init__(self, channels=16, epochs=60, **options):
@@ -247,6 +248,7 @@ class _Recurrent(_Sequence):
         return _LastState(2 * joints, self.channels, outputs)
 
     def operations(self):
+        """Operations for one window, all its samples read."""
         steps, units = self._shape[1], self.channels
         gates = self.network.recurrent
         products = gates.weight_ih_l0.numel() + gates.weight_hh_l0.numel() + 3 * units

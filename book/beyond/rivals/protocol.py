@@ -23,11 +23,11 @@ from ddlib.metrics import rmss
 from ddlib.simulation import Recording
 from ddlib.trajectories import OutsideFamilyWarning
 
-_KINDS = ("windows", "states")
-_MARGIN = 0.1  # share of the training box's edge by which inputs may leave it without a warning
+INPUTS = ("windows", "states")
+OUTSIDE_MARGIN = 0.1  # share of the training box's edge by which inputs leave it unwarned
 
 
-class _NotFitted(RuntimeError):
+class NotFitted(RuntimeError):
     """A rival was asked before it had learnt anything."""
 
 
@@ -45,7 +45,7 @@ class Cases:
     step: float  # sampling period of the windows, s
 
     def __post_init__(self):
-        one_of("kind", self.kind, _KINDS)
+        one_of("kind", self.kind, INPUTS)
         number("step", self.step, 0.0, open_low=True)
         x = shaped("x", self.x, "(cases, joint, rows)")
         if self.kind == "states" and x.shape[-1] != 3:
@@ -77,11 +77,11 @@ class Cases:
         """The states that a polynomial of this degree through each window gives at its centre."""
         if self.kind != "windows":
             raise ValueError(f"kind must be 'windows' to estimate states, got {self.kind!r}")
-        filters = _derivative_filters(self.x.shape[-1], self.step, degree)
+        filters = derivative_filters(self.x.shape[-1], self.step, degree)
         return Cases(self.x @ filters.T, self.torque, "states", self.step)
 
 
-def _derivative_filters(width: int, step: float, degree: int = 3) -> np.ndarray:
+def derivative_filters(width: int, step: float, degree: int = 3) -> np.ndarray:
     """Filters of a window for position, velocity and acceleration at its centre, (3, width)."""
     return np.stack([savitzky_golay(width, k, step, degree) for k in range(3)])
 
@@ -111,10 +111,10 @@ class Rival(ABC):
         """Predicted torque, shape (cases, joint), of inputs as in `Cases`.
 
         Where the rival has no answer it raises a ValueError; inputs that lie outside the box of the
-        training inputs by more than `_MARGIN` are answered with an `OutsideFamilyWarning`.
+        training inputs by more than `OUTSIDE_MARGIN` are answered with an `OutsideFamilyWarning`.
         """
         if not hasattr(self, "_shape"):
-            raise _NotFitted(f"{self!r} has learnt nothing: call fit first")
+            raise NotFitted(f"{self!r} has learnt nothing: call fit first")
         joints, rows = self._shape
         x = shaped("x", x, f"(cases, {joints}, {rows})")
         outside = self.outside(x)
@@ -128,9 +128,9 @@ class Rival(ABC):
         return predicted
 
     def outside(self, x) -> np.ndarray:
-        """Whether inputs ``(cases, joint, rows)`` lie outside the training box by `_MARGIN`."""
+        """Whether inputs ``(cases, joint, rows)`` leave the training box by `OUTSIDE_MARGIN`."""
         low, high = self._box
-        slack = _MARGIN * (high - low)
+        slack = OUTSIDE_MARGIN * (high - low)
         return ((x < low - slack) | (x > high + slack)).any((-2, -1))
 
     def __repr__(self):
@@ -164,7 +164,7 @@ class Estimating(Rival):
         self.rival, self.degree = rival, degree
 
     def _fit(self, x, torque):
-        self.filters = _derivative_filters(x.shape[-1], self.step, self.degree)
+        self.filters = derivative_filters(x.shape[-1], self.step, self.degree)
         self.rival.fit(Cases(x @ self.filters.T, torque, "states", self.step))
 
     def _torque(self, x):

@@ -10,7 +10,7 @@ from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
 from scipy.spatial import cKDTree
 
-from beyond.rivals.protocol import _MARGIN, Rival
+from beyond.rivals.protocol import OUTSIDE_MARGIN, Rival
 from ddlib._check import integer, number, one_of, shaped
 from ddlib.dynamics import Operations
 from ddlib.identification import SIGN_SPEED
@@ -51,15 +51,15 @@ def _cube_corners(u, cells: int) -> tuple[np.ndarray, np.ndarray]:
     for k in range(u.shape[1]):
         both = np.stack([low[:, k], low[:, k] + 1], -1)
         share = np.stack([1 - part[:, k], part[:, k]], -1)
-        count = weights.shape[1]
+        corners = weights.shape[1]
         nodes = np.concatenate(
-            [np.repeat(nodes, 2, 1), np.tile(both, count)[..., None]], -1
+            [np.repeat(nodes, 2, 1), np.tile(both, corners)[..., None]], -1
         )  # the last axis changes fastest
         weights = (weights[..., None] * share[:, None]).reshape(len(u), -1)
     return nodes, weights
 
 
-def _full_table(
+def full_table(
     function: Callable, x, limits, cells: int, *, interpolated: bool = True
 ) -> np.ndarray:
     """What a table would answer that has the right torque in every cell, shape (cases, joint)."""
@@ -70,16 +70,16 @@ def _full_table(
     if not interpolated:
         middle = (np.clip(np.floor(u * cells), 0, cells - 1) + 0.5) / cells
         return function((middle * size + low.ravel()).reshape(x.shape))
-    found = []
+    answers = []
     for block in np.array_split(u, max(1, len(u) // 1000)):
         nodes, weights = _cube_corners(block, cells)
         states = (nodes / cells * size + low.ravel()).reshape(-1, *x.shape[1:])
         values = function(states).reshape(*weights.shape, -1)
-        found.append(np.einsum("nc,ncj->nj", weights, values))
-    return np.concatenate(found)
+        answers.append(np.einsum("nc,ncj->nj", weights, values))
+    return np.concatenate(answers)
 
 
-class _Bounded(Rival):
+class Bounded(Rival):
     """A rival with room for a box of states alone; one outside is refused, or taken to the edge."""
 
     def __init__(self, limits=None, beyond: str = "refuse"):
@@ -92,7 +92,7 @@ class _Bounded(Rival):
         """The box, decided by training states; they in units of it."""
         if self.limits is None:
             low, high = x.min(0), x.max(0)
-            slack = np.where(high > low, _MARGIN * (high - low), 0.5)
+            slack = np.where(high > low, OUTSIDE_MARGIN * (high - low), 0.5)
             self.low, self.high = low - slack, high + slack
         elif self.limits.shape[1:] != x.shape[1:]:
             raise ValueError(
@@ -122,7 +122,7 @@ def _inside(x, low, high, beyond) -> np.ndarray:
     return np.clip(u, 0.0, 1.0)
 
 
-class _Nearest(_Bounded):
+class Nearest(Bounded):
     """All training cases are kept; the torque is that of the nearest, in deviations."""
 
     def _fit(self, x, torque):
@@ -136,14 +136,16 @@ class _Nearest(_Bounded):
         return self._torques[self._tree.query((x / self.deviation).reshape(len(x), -1))[1]]
 
     def count(self):
+        """Stored numbers: all cases, their torques, and the deviations."""
         return self._tree.data.size + self._torques.size + self.deviation.size
 
     def operations(self):
+        """Operations to compare a case with all that are kept."""
         cases, axes = self._tree.data.shape
         return Operations(axes + cases * axes, cases * (2 * axes - 1))
 
 
-class _LocalPlanes(_Nearest):
+class LocalPlanes(Nearest):
     """All training cases are kept; a plane through the nearest ones gives the torque.
 
     Atkeson, Moore & Schaal (1997), with neighbours in place of a kernel. Beyond the recorded
@@ -164,7 +166,7 @@ class _LocalPlanes(_Nearest):
         return np.linalg.solve(square, np.swapaxes(rows, 1, 2) @ self._torques[near])[:, 0]
 
 
-class CellTable(_Bounded):
+class CellTable(Bounded):
     """Cells over states, motions or configurations; the torque is linear in what remains.
 
     In a cell of states it is the mean of what was recorded there. Over motions, positions and
@@ -181,7 +183,7 @@ class CellTable(_Bounded):
         over: str = "states",  # or "motions" or "configurations": what the axes are
         friction: bool = True,  # over configurations: torque is linear in velocities and signs, too
         ridge: float = 0.1,  # penalty on squared coefficients: so many cases that say zero
-        limits=None,  # as in `_Bounded`
+        limits=None,  # as in `Bounded`
         beyond: str = "refuse",  # or "edge"
     ):
         super().__init__(limits, beyond)
@@ -245,7 +247,7 @@ class CellTable(_Bounded):
         return Operations(axes + products + signs + each, axes + each)
 
 
-class GridTable(_Bounded):
+class GridTable(Bounded):
     """Torques at the nodes of a grid over states, multilinear between them.
 
     The nodes get the torques that fit all cases best by least squares, with a penalty on their
@@ -276,14 +278,14 @@ class GridTable(_Bounded):
         self.values = self.mean + hats.T @ cho_solve(cho_factor(gram), torque - self.mean)
 
     def _torque(self, x):
-        found = []
+        answers = []
         for block in np.array_split(self._scaled(x), max(1, len(x) // 1000)):
             index, weights = self._corners(block)
             place = np.minimum(np.searchsorted(self.known, index), len(self.known) - 1)
             known = (self.known[place] == index)[..., None]
             values = np.where(known, self.values[place], self.mean)
-            found.append(np.einsum("nc,ncj->nj", weights, values))
-        return np.concatenate(found)
+            answers.append(np.einsum("nc,ncj->nj", weights, values))
+        return np.concatenate(answers)
 
     def _corners(self, u) -> tuple[np.ndarray, np.ndarray]:
         nodes, weights = _cube_corners(u.reshape(len(u), -1), self.cells)

@@ -9,15 +9,15 @@ import numpy as np
 from beyond.rivals.gaussian import GaussianProcess
 from beyond.rivals.protocol import Cases
 from beyond.studies.tx40 import (
-    _BLOCKS,
-    _EPOCHS,
-    _HIDDEN,
-    _RATES,
+    BLOCKS,
+    EPOCHS,
+    HIDDEN,
+    RATES,
     Ridge,
     Windowed,
-    _best_penalty,
-    _both,
-    _decayed,
+    best_penalty,
+    decayed_network,
+    errors_of_fold,
     identified,
     known_structure,
     least_squares,
@@ -50,11 +50,11 @@ _STARTS = 1000  # seed of the first null network: none shares its start with a r
 def _grid(members: int) -> list[dict]:
     """Every window of `_RATES`: errors of networks and of the models that are no networks."""
     rows = []
-    for rate, widths in _RATES.items():
+    for rate, widths in RATES.items():
         for width in widths:
             data = Windowed.of(rate, width)
-            found = [_cell(data, fold, members) for fold in data.folds()]
-            row = {name: np.stack([cell[name] for cell in found]) for name in found[0]}
+            cells = [_cell(data, fold, members) for fold in data.folds()]
+            row = {name: np.stack([cell[name] for cell in cells]) for name in cells[0]}
             rows.append({"rate": rate, "width": width, **row})
     return rows
 
@@ -65,8 +65,8 @@ def _cell(data: Windowed, fold, members: int) -> dict:
     flat, states, given = data.flat, data.states, data.current[training]
     plain = states.reshape(len(states), -1)
     model, *_ = trained(data.x[training], given, members, 0, data.width)
-    network = _both(model, data, fold)
-    penalty = _best_penalty(data, training)
+    network = errors_of_fold(model, data, fold)
+    penalty = best_penalty(data, training)
     others = {
         "ridge": Ridge(flat[training], given).predict(flat[test], penalty),
         "least squares": least_squares(flat[training], given, flat[test]),
@@ -100,15 +100,18 @@ def _variants(members: int) -> dict:
     for fold in data.folds():
         training, _ = fold
         x, y = data.x[training], data.current[training]
-        last, kept, _ = trained(x, y, members, 0, data.width, _COURSE, epochs=paper.EPOCHS)
-        for epoch, model in {**kept, paper.EPOCHS: last}.items():
-            put(f"{epoch} epochs", _both(model, data, fold))
+        last, snapshots, _ = trained(x, y, members, 0, data.width, _COURSE, epochs=paper.EPOCHS)
+        for epoch, model in {**snapshots, paper.EPOCHS: last}.items():
+            put(f"{epoch} epochs", errors_of_fold(model, data, fold))
         for units in (1, 3, 20):
             model, *_ = trained(x, y, members, 0, data.width, hidden=units)
-            put(f"{units} units", _both(model, data, fold))
-        start = Weights.random(members, data.width, _HIDDEN, 6, 6)
+            put(f"{units} units", errors_of_fold(model, data, fold))
+        start = Weights.random(members, data.width, HIDDEN, 6, 6)
         for decay in _DECAYS:
-            each = [_both(_decayed(x, y, start[k], decay), data, fold) for k in range(members)]
+            each = [
+                errors_of_fold(decayed_network(x, y, start[k], decay), data, fold)
+                for k in range(members)
+            ]
             put(f"decay {decay:g}", map(np.stack, zip(*each)))
         for decay in _DECAYS[-2:]:
             put(f"on the rest, decay {decay:g}", _structured(data, fold, members, decay))
@@ -121,8 +124,10 @@ def _structured(data: Windowed, fold, members: int, decay: float) -> list[np.nda
     states, given = data.states, data.current[training]
     known = known_structure(states[training], given, states)
     left = data.current - known
-    start = Weights.random(members, data.width, _HIDDEN, 6, 6)
-    models = [_decayed(data.x[training], left[training], start[k], decay) for k in range(members)]
+    start = Weights.random(members, data.width, HIDDEN, 6, 6)
+    models = [
+        decayed_network(data.x[training], left[training], start[k], decay) for k in range(members)
+    ]
     return [
         np.stack([wrong(known[part] + m.torque(data.x[part]), data, part) for m in models])
         for part in fold
@@ -183,13 +188,13 @@ def _filters(width: int, members: int, draws: int) -> dict:
     data = Windowed.of(100, width)
     y = data.current
     same = np.repeat(y[None], members, 0)
-    model, _, made = trained(data.x, y, members, 0, width)
-    start = Weights.random(members, width, _HIDDEN, 6, 6)
-    untrained = TorqueModel(start, made.inputs, made.outputs)
+    model, _, training_set = trained(data.x, y, members, 0, width)
+    start = Weights.random(members, width, HIDDEN, 6, 6)
+    untrained = TorqueModel(start, training_set.inputs, training_set.outputs)
     structure = identified(data.states, y)
     known = structure.friction, structure.rest
     flat = data.flat
-    penalty = _best_penalty(data, np.ones(len(flat), bool))
+    penalty = best_penalty(data, np.ones(len(flat), bool))
 
     fitted = Ridge(flat, y).filters(penalty).T.reshape(6, 6, width)
     own = np.arange(6)
@@ -217,36 +222,36 @@ def _filters(width: int, members: int, draws: int) -> dict:
 
 def _by_block() -> dict:
     """Inertia and friction from each part of the recording but one, and what friction is worth."""
-    data, found = Windowed.of(*_MAIN), []
+    data, fits = Windowed.of(*_MAIN), []
     states = data.states
     for training, _ in data.folds():
-        made = identified(states[training], data.current[training])
-        found.append((made.inertia, made.slope, made.viscous, made.coulomb))
-    return dict(zip(("inertia", "slope", "viscous", "coulomb"), map(np.array, zip(*found))))
+        equations = identified(states[training], data.current[training])
+        fits.append((equations.inertia, equations.slope, equations.viscous, equations.coulomb))
+    return dict(zip(("inertia", "slope", "viscous", "coulomb"), map(np.array, zip(*fits))))
 
 
 def _hidden_units(members: int) -> dict:
     """Errors of an output layer fitted anew, without hidden units ``(blocks,)`` and with them."""
-    data, found = Windowed.of(*_MAIN), {"training": [], "test": []}
+    data, errors = Windowed.of(*_MAIN), {"training": [], "test": []}
     flat = data.flat
     for cases in data.folds():
         training, given = cases[0], data.current[cases[0]]
         model, *_ = trained(data.x[training], given, members, 0, data.width)
         hidden = model.weights.activity(model.scaled(data.x))[0]
         features = [flat, *(np.column_stack([flat, h]) for h in hidden)]
-        for row, part in zip(found.values(), cases):
+        for row, part in zip(errors.values(), cases):
             fits = [least_squares(x[training], given, x[part]) for x in features]
             row.append([wrong(fit, data, part).mean() for fit in fits])
     return {
         side: {"alone": np.array(x)[:, 0], "with hidden units": np.array(x)[:, 1:]}
-        for side, x in found.items()
+        for side, x in errors.items()
     }
 
 
 def _differences() -> dict:
     """Errors with states from three samples, one for each block, by samples a second."""
     rows: dict = {}
-    for rate in _RATES:
+    for rate in RATES:
         data, row = Windowed.of(rate, 3), {"states": [], "identified": []}
         states = data.states
         plain = states.reshape(len(states), -1)
@@ -303,8 +308,8 @@ def _real_arm(members: int = 3, filters: int = 10, draws: int = 20) -> dict:
         "members": members,
         "filters": filters,
         "draws": draws,
-        "epochs": _EPOCHS,
-        "blocks": _BLOCKS,
+        "epochs": EPOCHS,
+        "blocks": BLOCKS,
         "grid": _grid(members),
         "differences": _differences(),
         "variants": _variants(members),

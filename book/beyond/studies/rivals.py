@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beyond.rivals.gaussian import GaussianProcess, _SemiParametric
+from beyond.rivals.gaussian import GaussianProcess, SemiParametric
 from beyond.rivals.identified import Identified
 from beyond.rivals.protocol import Cases, Estimating, trial
-from beyond.studies.lineup import _DAYS as _RECORDINGS, _LINES, _REFERENCE
+from beyond.studies.lineup import _DAYS as _RECORDINGS, LINES, REFERENCE
 from ddlib.analysis import noise_floor
 from ddlib.identification import FRICTION, RIGID
 from ddlib.metrics import rmss
@@ -21,11 +21,11 @@ from ddlib.trajectories import MAX_EXTENT_DEG, OutsideFamilyWarning
 from workshop.report import results
 from workshop.report.code_hash import study
 
-_SAMPLES = 21  # samples of the windows: the paper's best
-_GRID = 9  # trajectories in a row of the square of extents
+WINDOW = 21  # samples of the windows: the paper's best
+SQUARE_POINTS = 9  # trajectories in a row of the square of extents
 
 _EVERY, _SHOWN = 4, 10  # samples of the square from test to test, and of those shown
-_BUDGET = 540  # stored numbers of the paper's network with ten hidden units
+NUMBERS_BUDGET = 540  # stored numbers of the paper's network with ten hidden units
 
 # Torques on the square: each rival at its largest size within the budget, or at its smallest.
 _TORQUES = results.FOLDER / "rivals-torques.npz"
@@ -40,7 +40,7 @@ class _Square(NamedTuple):
     recording: Recording
 
 
-def _square(setup: Setup, points: int = 9) -> _Square:
+def square_recordings(setup: Setup, points: int = 9) -> _Square:
     """Record trajectories on a grid of extents, equally spaced from ``45 / points`` degrees on."""
     edge = MAX_EXTENT_DEG * np.arange(1, points + 1) / points
     extents = np.stack(np.meshgrid(edge, edge, indexing="ij"), -1).reshape(-1, 2)
@@ -51,7 +51,7 @@ def recorded(day: int) -> tuple[dict[str, dict[str, Cases]], Cases]:
     """Cases of one day by `_INPUTS` and name (inside and outside the hull), and the square's."""
     setup = JOINT_DAMPING.repeated(day)
     training, six = split(setup.record())
-    whole = _square(setup, _GRID)
+    whole = square_recordings(setup, SQUARE_POINTS)
     parts = {
         "training": (training, 1),
         "trajectory 6": (six, 1),
@@ -60,9 +60,9 @@ def recorded(day: int) -> tuple[dict[str, dict[str, Cases]], Cases]:
     }
     seen: dict = {inputs: {} for inputs in _INPUTS}
     for name, (part, every) in parts.items():
-        seen["positions"][name] = Cases.windows(part, _SAMPLES)[::every]
+        seen["positions"][name] = Cases.windows(part, WINDOW)[::every]
         seen["exact states"][name] = Cases.states(part, true_states(part, setup))[::every]
-    return seen, Cases.windows(whole.recording, _SAMPLES)[::_SHOWN]
+    return seen, Cases.windows(whole.recording, WINDOW)[::_SHOWN]
 
 
 def _seen(line, inputs: str, size, seed: int):
@@ -77,13 +77,13 @@ def _floors(sets: dict) -> dict:
     """The noise floor of each set (`ddlib.analysis.noise_floor`), for each of `_INPUTS`."""
     (noise,), (encoder,) = JOINT_DAMPING.effects.torque_sensor, JOINT_DAMPING.effects.encoder
     bits = float(np.log2(2 * np.pi / encoder.step))
-    found = {inputs: {} for inputs in _INPUTS}
+    floors = {inputs: {} for inputs in _INPUTS}
     for name, cases in sets.items():
         deviation = cases.torque.std(0)
         share = float(np.sqrt(np.mean((np.array(noise.std) / deviation) ** 2)))
-        known = JOINT_DAMPING.arm, deviation, _SAMPLES, bits, share, LOG_STEP
-        found["positions"][name], found["exact states"][name] = noise_floor(*known), share
-    return found
+        known = JOINT_DAMPING.arm, deviation, WINDOW, bits, share, LOG_STEP
+        floors["positions"][name], floors["exact states"][name] = noise_floor(*known), share
+    return floors
 
 
 @study
@@ -93,29 +93,29 @@ def _rivals() -> dict:
     for day in range(1, _RECORDINGS + 1):
         sets, asked = recorded(day)
         floor = floor or _floors(sets["positions"])
-        for name, line in _LINES.items():
+        for name, line in LINES.items():
             for inputs, size in product(_INPUTS, line.sizes if day <= line.days else ()):
                 rival = _seen(line, inputs, size, day)
                 if rival is None:
                     continue
-                found = trial(rival, sets[inputs]["training"], sets[inputs])
-                row = rows.setdefault((name, inputs, size), _row(name, inputs, size, found))
-                row["seconds"].append(found.seconds)
-                for part, error in found.rmss.items():
+                tried = trial(rival, sets[inputs]["training"], sets[inputs])
+                row = rows.setdefault((name, inputs, size), _row(name, inputs, size, tried))
+                row["seconds"].append(tried.seconds)
+                for part, error in tried.rmss.items():
                     row["errors"][part].append(error)
-                affordable = name not in torques or found.count <= _BUDGET
+                affordable = name not in torques or tried.count <= NUMBERS_BUDGET
                 if day == 1 and inputs == "positions" and affordable:
                     torques[name] = _asked(rival, asked)
         if day == 1:
             _keep(torques, asked)
     return {
         "days": _RECORDINGS,
-        "width": _SAMPLES,
-        "reference": _REFERENCE,
-        "budget": _BUDGET,
+        "width": WINDOW,
+        "reference": REFERENCE,
+        "budget": NUMBERS_BUDGET,
         "floor": floor,
         "lines": {
-            name: {"varied": line.varied, "family": line.family} for name, line in _LINES.items()
+            name: {"varied": line.varied, "family": line.family} for name, line in LINES.items()
         },
         "rows": list(rows.values()),
     }
@@ -140,7 +140,7 @@ def _asked(rival, asked: Cases) -> np.ndarray:
 
 def _keep(torques: dict, asked: Cases) -> None:
     """Measured and predicted torques of the square, shape (rivals + 1, runs, samples, joint)."""
-    shape = (-1, _GRID**2, len(asked) // _GRID**2, 2)
+    shape = (-1, SQUARE_POINTS**2, len(asked) // SQUARE_POINTS**2, 2)
     values = np.stack([asked.torque, *torques.values()]).reshape(shape)
     part = _TORQUES.with_name(_TORQUES.name + ".part")
     with open(part, "wb") as file:
@@ -156,7 +156,7 @@ _PROCESSES = {
     "directions of the window": lambda: GaussianProcess(directions=_DIRECTIONS, restarts=0),
     "estimated states": lambda: Estimating(GaussianProcess("states", restarts=0)),
     "known structure": lambda: Estimating(Identified(RIGID + FRICTION)),
-    "beside known structure": lambda: Estimating(_SemiParametric(RIGID + FRICTION, restarts=0)),
+    "beside known structure": lambda: Estimating(SemiParametric(RIGID + FRICTION, restarts=0)),
 }
 
 
@@ -164,11 +164,11 @@ def _interval_row(rival, cases: Cases) -> dict:
     within = isinstance(rival, Estimating)
     deviation = getattr(rival.rival if within else rival, "deviation", None)
     with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):
-        found = rival.torque(cases.x)
-        row = {"rmss": float(rmss(found, cases.torque))}
+        predicted = rival.torque(cases.x)
+        row = {"rmss": float(rmss(predicted, cases.torque))}
         if deviation is not None:
             width = _SIGMAS * deviation(cases.x @ rival.filters.T if within else cases.x)
-            row["covered"] = float((np.abs(found - cases.torque) <= width).mean())
+            row["covered"] = float((np.abs(predicted - cases.torque) <= width).mean())
             row["half width"] = width.mean(0)
     return row
 

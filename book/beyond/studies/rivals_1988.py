@@ -8,13 +8,13 @@ from functools import cache
 
 import numpy as np
 
-from beyond.rivals.bases import Polynomial, _Fourier
-from beyond.rivals.cmac import CMAC, _Diverged
+from beyond.rivals.bases import Fourier, Polynomial
+from beyond.rivals.cmac import CMAC, Diverged
 from beyond.rivals.identified import Identified
 from beyond.rivals.protocol import Cases, Rival
-from beyond.rivals.tables import CellTable, GridTable, _full_table, _Nearest
-from beyond.studies.loop.run_time_parts import _square_extents, exact as equations
-from beyond.studies.rivals import _square
+from beyond.rivals.tables import CellTable, GridTable, Nearest, full_table
+from beyond.studies.loop.feedforwards import exact as equations, square_extents
+from beyond.studies.rivals import square_recordings
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, Setup, inside_hull, true_states
 from ddlib.simulation import Recording
@@ -24,7 +24,7 @@ from workshop.report.code_hash import study
 _DAYS = (1, 2, 3, 4, 5)
 _LATER = 100  # days until the same is recorded again; twice that: to choose settings
 _WIDTH = 21  # from which states are estimated: the best of Table 4-1
-_KINDS = ("exact", "positions only")
+KINDS = ("exact", "positions only")
 POINTS, _STRIDE = 9, 5  # of each joint in the square; of its samples every fifth
 
 
@@ -39,7 +39,7 @@ def _recorded(day: int, what: str) -> Recording:
     """The six runs, the square, or the practised trajectory again and again, on some day."""
     setup = JOINT_DAMPING.repeated(day)
     if what == "square":
-        return _square(setup, POINTS).recording
+        return square_recordings(setup, POINTS).recording
     return setup.record(*([[PRACTISED] * REPEATED[-1]] if what == "practised" else []))
 
 
@@ -52,7 +52,7 @@ def _day(day: int, kind: str) -> dict[str, Cases]:
     """Training cases of a day and what it is tested on."""
     today, later = (JOINT_DAMPING.repeated(d) for d in (day, day + _LATER))
     recording, motions = _recorded(day, "six"), _recorded(day, "square")
-    inside = inside_hull(_square_extents(POINTS))
+    inside = inside_hull(square_extents(POINTS))
     return {
         "training": _cases(today, recording[:5], kind),
         "again": _cases(later, _recorded(day + _LATER, "six")[:5], kind),
@@ -96,7 +96,7 @@ _FULL = (2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48)  # cells of an axis
 
 def _table(over: str, cells: int) -> Rival:
     if over == "nearest":
-        return _Nearest(beyond="edge")
+        return Nearest(beyond="edge")
     if over == "multilinear":
         return GridTable(cells, beyond="edge")
     return CellTable(cells, over, beyond="edge")
@@ -106,19 +106,19 @@ def _table(over: str, cells: int) -> Rival:
 def _rivals_tables(days=_DAYS) -> dict:
     """Errors of tables on all sets and days; maps around one trajectory; full tables."""
     rows = []
-    for kind in _KINDS:
+    for kind in KINDS:
         sets = {day: _day(day, kind) for day in days}
         for over, cells in [("nearest", 0), *((o, n) for o, some in _CELLS.items() for n in some)]:
-            found = []
+            by_day = []
             for day in days:
                 rival = _table(over, cells).fit(sets[day]["training"])
-                found.append(_errors(rival, sets[day]) | {"count": rival.count()})
-            rows.append({"kind": kind, "over": over, "cells": cells, **_over_days(found)})
+                by_day.append(_errors(rival, sets[day]) | {"count": rival.count()})
+            rows.append({"kind": kind, "over": over, "cells": cells, **_over_days(by_day)})
     return {
         "days": list(days),
         "floor": [_floor(day) for day in days],
         "rows": rows,
-        "around": {kind: _around(kind, days) for kind in _KINDS},
+        "around": {kind: _around(kind, days) for kind in KINDS},
         "full": _full(),
     }
 
@@ -141,13 +141,13 @@ def _families() -> dict[str, list[Rival]]:
 def _around(kind: str, days) -> dict:
     """What learnt one trajectory: its error there by repetitions, and all over the square."""
     names = (*_families(), *(f"{name}, varied" for name in _VARIED))
-    found, floor = {name: [] for name in names}, []
+    by_name, floor = {name: [] for name in names}, []
     for day in days:
         numbers = [1000 * day + k for k in range(PRACTICE + 2)]
         setups = [JOINT_DAMPING.repeated(number) for number in numbers]
         runs = [_recorded(number, "practised") for number in numbers[:-1]]
         later, recording = setups[-1], _recorded(numbers[-1], "square")
-        practised = _practised_distance() == 0
+        practised = practised_distance() == 0
         everywhere = _cases(later, recording, kind, _STRIDE)
         choice = _cases(setups[-2], runs[-1][0], kind)
         by_amount = [
@@ -167,14 +167,14 @@ def _around(kind: str, days) -> dict:
                 _map(best.fit(training), everywhere, scale)[practised][0]
                 for training in by_amount[:-1]
             ]
-            found[name].append(
+            by_name[name].append(
                 {"there": [*there, errors[practised][0]], "errors": errors,
                  "cells": getattr(best, "cells", 0)}
             )  # fmt: skip
             if name in _VARIED:
                 errors = _map(best.fit(varied), everywhere, scale)
-                found[f"{name}, varied"].append({"errors": errors})
-    return {name: _over_days(some) for name, some in found.items()} | {"floor": floor}
+                by_name[f"{name}, varied"].append({"errors": errors})
+    return {name: _over_days(some) for name, some in by_name.items()} | {"floor": floor}
 
 
 def _map(rival: Rival, everywhere: Cases, scale) -> np.ndarray:
@@ -187,7 +187,7 @@ def _map(rival: Rival, everywhere: Cases, scale) -> np.ndarray:
 def _full() -> dict:
     """Tables with the right torque in every cell, and how many cells the training runs reach."""
     setup = JOINT_DAMPING
-    training, everywhere = setup.record()[:5], _square(setup, POINTS).recording
+    training, everywhere = setup.record()[:5], square_recordings(setup, POINTS).recording
     states = _cases(setup, everywhere, "exact", 10).x
     seen = _cases(setup, training, "exact").x
     both = np.concatenate([states, seen])
@@ -198,11 +198,11 @@ def _full() -> dict:
 
     exact, reached = torque(states), []
     for cells in _FULL:
-        table = CellTable(cells, limits=limits).fit(Cases(seen, torque(seen), "states", 0.01))
-        reached.append(1 - float(table.empty(states).mean()))
+        cell_table = CellTable(cells, limits=limits).fit(Cases(seen, torque(seen), "states", 0.01))
+        reached.append(1 - float(cell_table.empty(states).mean()))
     errors = {
         name: [
-            float(rmss(_full_table(torque, states, limits, n, interpolated=smooth), exact))
+            float(rmss(full_table(torque, states, limits, n, interpolated=smooth), exact))
             for n in _FULL
         ]
         for name, smooth in (("constant", False), ("multilinear", True))
@@ -226,11 +226,11 @@ def _rivals_cmac(days=_DAYS) -> dict:
         *({"layers": _LAYERS, "width": _HASHED_WIDTH, "slots": slots} for slots in _SLOTS),
     ]
     rows = []
-    for kind in _KINDS:
+    for kind in KINDS:
         sets = {day: _day(day, kind) for day in days}
-        for setting in settings if kind == _KINDS[1] else settings[: len(_WIDTHS)]:
-            found = [_cmac(sets[day], setting) for day in days]
-            rows.append({"kind": kind, **setting, **_over_days(found)})
+        for setting in settings if kind == KINDS[1] else settings[: len(_WIDTHS)]:
+            by_day = [_cmac(sets[day], setting) for day in days]
+            rows.append({"kind": kind, **setting, **_over_days(by_day)})
     chosen = _over_days([_chosen_cmac(day, kind, sets[day]) for day in days])
     return {"days": list(days), "floor": list(map(_floor, days)), "rows": rows, "chosen": chosen}
 
@@ -240,7 +240,7 @@ def _cmac(sets: dict[str, Cases], setting: dict) -> dict:
     rival = CMAC(**setting, epochs=_EPOCHS, beyond="edge")
     try:
         errors, diverged = _errors(rival.fit(sets["training"]), sets), False
-    except _Diverged:
+    except Diverged:
         errors, diverged = dict.fromkeys(sets, np.nan), True
     return {
         **errors,
@@ -297,7 +297,7 @@ _RIDGES = (0.0, 1e-8, 1e-6, 1e-4, 1e-2)  # on squared coefficients
 _BASES: dict[str, tuple[Callable[[int], Rival], int]] = {
     "chebyshev": (Polynomial, 6),
     "monomials": (lambda order: Polynomial(order, "monomials"), 5),
-    "fourier": (_Fourier, 3),
+    "fourier": (Fourier, 3),
 }
 
 
@@ -305,15 +305,15 @@ _BASES: dict[str, tuple[Callable[[int], Rival], int]] = {
 def _rivals_bases(days=_DAYS) -> dict:
     """Errors of polynomials and Fourier series by degree and penalty; which one is chosen."""
     rows, chosen = [], {}
-    for kind in _KINDS:
+    for kind in KINDS:
         sets = {day: _day(day, kind) for day in days}
-        for name, (make, highest) in list(_BASES.items())[: None if kind == _KINDS[1] else 1]:
+        for name, (make, highest) in list(_BASES.items())[: None if kind == KINDS[1] else 1]:
             for order in range(1, highest + 1):
-                found = [_by_ridge(make(order), sets[day]["training"], sets[day]) for day in days]
+                by_day = [_by_ridge(make(order), sets[day]["training"], sets[day]) for day in days]
                 for k, ridge in enumerate(_RIDGES):
                     rows.append(
                         {"kind": kind, "basis": name, "order": order, "ridge": ridge}
-                        | _over_days([each[k] for each in found])
+                        | _over_days([each[k] for each in by_day])
                     )
     for name in ("chebyshev", "fourier"):
         chosen[name] = [_left_out(*_BASES[name], sets[day]["training"]) for day in days]
@@ -324,13 +324,13 @@ def _by_ridge(rival: Rival, training: Cases, sets: dict[str, Cases]) -> list[dic
     """Errors for each penalty; the functions of a set are computed once."""
     rival.fit(training)
     fitted = [rival.with_ridge(ridge) for ridge in _RIDGES]
-    found = [{"count": each.count()} for each in fitted]
+    rows = [{"count": each.count()} for each in fitted]
     for name, cases in sets.items():
         design = np.concatenate([rival.design(x) for x in np.array_split(cases.x, 5)])
-        for row, each in zip(found, fitted):
+        for row, each in zip(rows, fitted):
             predicted = each.mean + design @ each.coefficients
             row[name] = float(rmss(predicted, cases.torque))
-    return found
+    return rows
 
 
 def _left_out(make, highest: int, training: Cases) -> dict:
@@ -346,6 +346,6 @@ def _left_out(make, highest: int, training: Cases) -> dict:
     return {"order": order, "ridge": ridge, "left out": float(np.sqrt(total[order, ridge] / 5))}
 
 
-def _practised_distance() -> np.ndarray:
+def practised_distance() -> np.ndarray:
     """Larger difference of extents to the practised one, degrees, ``(runs,)``, as in `_square`."""
-    return np.abs(_square_extents(POINTS) - PRACTISED).max(1)
+    return np.abs(square_extents(POINTS) - PRACTISED).max(1)

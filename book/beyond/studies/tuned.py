@@ -24,23 +24,23 @@ from typing import NamedTuple
 import joblib
 import numpy as np
 
-from beyond.rivals.bases import Polynomial, _Fourier
+from beyond.rivals.bases import Fourier, Polynomial
 from beyond.rivals.cmac import CMAC
-from beyond.rivals.gaussian import GaussianProcess, _SemiParametric
-from beyond.rivals.identified import Linear, _Rubbing
-from beyond.rivals.networks import _Convolution, _Recurrent
+from beyond.rivals.gaussian import GaussianProcess, SemiParametric
+from beyond.rivals.identified import Linear, LinearWithSigns
+from beyond.rivals.networks import Convolution, Recurrent
 from beyond.rivals.protocol import Cases, Estimating
-from beyond.rivals.tables import CellTable, GridTable, _LocalPlanes, _Nearest
-from beyond.studies.checks.learnt_filters import _NAMES, _recorded
+from beyond.rivals.tables import CellTable, GridTable, LocalPlanes, Nearest
+from beyond.studies.checks.learnt_filters import PARAMETER_NAMES, recorded_parts
 from beyond.studies.lineup import (
-    _REFERENCE,
-    _SEARCH,
-    _descent,
-    _identified,
-    _lagrangian,
-    _solver,
+    GAUSSIAN_SEARCH,
+    REFERENCE,
+    by_descent,
+    by_solver,
+    identified,
+    lagrangian,
 )
-from beyond.studies.rivals import _BUDGET
+from beyond.studies.rivals import NUMBERS_BUDGET
 from ddlib.identification import FilteredEquations
 from ddlib.metrics import rmss
 from ddlib.trajectories import OutsideFamilyWarning
@@ -53,14 +53,14 @@ _PENALTY = {"penalty": (1e-6, 1e-4, 1e-2)}
 _UNITS = {"hidden": (2, 10)}
 _STEPS = _UNITS | {"steps": (3, 10, 30)}
 _START = 0.3  # range of the initial weights
-_BOOKS_OWN = "filters and equations"
+OWN_RIVAL = "filters and equations"
 
 
 class _Filters:
     """The equations with learnt filters, as other rivals are asked."""
 
     def __init__(self, width: int, pull: float):
-        self.made = FilteredEquations(_NAMES, width, 0.01, pull)
+        self.made = FilteredEquations(PARAMETER_NAMES, width, 0.01, pull)
         self.torque = self.made.predict
 
     def fit(self, cases: Cases) -> _Filters:
@@ -68,7 +68,7 @@ class _Filters:
         return self
 
     def count(self) -> int:
-        return self.made.filters.size + len(_NAMES)
+        return self.made.filters.size + len(PARAMETER_NAMES)
 
 
 class _Tuned(NamedTuple):
@@ -87,10 +87,10 @@ def _cells(over):
     return _seen(lambda cells, _: CellTable(cells, over, beyond="edge"))
 
 
-_RIVALS: dict[str, _Tuned] = {
-    "nearest case": _Tuned(_seen(lambda _: _Nearest(beyond="edge")), {}),
+RIVALS: dict[str, _Tuned] = {
+    "nearest case": _Tuned(_seen(lambda _: Nearest(beyond="edge")), {}),
     "local planes": _Tuned(
-        _seen(lambda n, _: _LocalPlanes(n)), {"neighbours": (60, 120, 240, 480, 960)}
+        _seen(lambda n, _: LocalPlanes(n)), {"neighbours": (60, 120, 240, 480, 960)}
     ),
     "table of states": _Tuned(_cells("states"), {"cells": (3, 10, 40)}),
     "table of configurations": _Tuned(_cells("configurations"), {"cells": (1, 2, 3)}),
@@ -102,45 +102,47 @@ _RIVALS: dict[str, _Tuned] = {
         _seen(lambda n, r, _: Polynomial(n, ridge=r)), {"degree": (1, 2, 3)} | _PENALTY
     ),
     "Fourier series": _Tuned(
-        _seen(lambda n, r, _: _Fourier(n, ridge=r)), {"order": (1, 2)} | _PENALTY
+        _seen(lambda n, r, _: Fourier(n, ridge=r)), {"order": (1, 2)} | _PENALTY
     ),
-    "identified": _Tuned(_seen(_identified), {"parameters": (3, 7)}),
+    "identified": _Tuned(_seen(identified), {"parameters": (3, 7)}),
     "linear filter": _Tuned(
         lambda _, w, r: Linear(ridge=r), {"penalty": tuple(10.0**-k for k in range(6, 11))}
     ),
     "linear filter with friction": _Tuned(
-        lambda _, w, s, r: _Rubbing(s, r, _DEGREE[w]),
+        lambda _, w, s, r: LinearWithSigns(s, r, _DEGREE[w]),
         {"saturates": (0.02, 0.05, 0.2), "penalty": (1e-6, 1e-8, 1e-10)},
     ),
-    _BOOKS_OWN: _Tuned(lambda _, w, p: _Filters(w, p), {"pull": (1e-3, 1e-2)}, (21, 31)),
-    "Lagrangian network": _Tuned(_seen(_lagrangian), {"units": (8,)}, days=_FEWER),
+    OWN_RIVAL: _Tuned(lambda _, w, p: _Filters(w, p), {"pull": (1e-3, 1e-2)}, (21, 31)),
+    "Lagrangian network": _Tuned(_seen(lagrangian), {"units": (8,)}, days=_FEWER),
     "Gaussian process": _Tuned(
-        lambda seed, w, n: GaussianProcess(directions=n, seed=seed, **_SEARCH),
+        lambda seed, w, n: GaussianProcess(directions=n, seed=seed, **GAUSSIAN_SEARCH),
         {"directions": (9, 12)},
         days=_FEWER,
     ),
     "structure and process": _Tuned(
-        _seen(lambda seed: _SemiParametric(_NAMES, seed=seed, **_SEARCH)), {}, days=_FEWER
+        _seen(lambda seed: SemiParametric(PARAMETER_NAMES, seed=seed, **GAUSSIAN_SEARCH)),
+        {},
+        days=_FEWER,
     ),
-    _REFERENCE: _Tuned(
-        lambda seed, w, n, e: _descent(n, seed, epochs=e, initial=_START),
+    REFERENCE: _Tuned(
+        lambda seed, w, n, e: by_descent(n, seed, epochs=e, initial=_START),
         _UNITS | {"epochs": (5000, 20_000)}, (21, 31),
     ),
     "second-order steps": _Tuned(
-        lambda seed, w, n, k: _solver(n, seed, steps=k, initial=_START), _STEPS
+        lambda seed, w, n, k: by_solver(n, seed, steps=k, initial=_START), _STEPS
     ),
     "on states": _Tuned(
-        _seen(lambda n, k, s: _solver(n, s, steps=k, initial=_START, kind="states")), _STEPS
+        _seen(lambda n, k, s: by_solver(n, s, steps=k, initial=_START, kind="states")), _STEPS
     ),
     "convolutions": _Tuned(
-        lambda seed, w, e: _Convolution(6, e, seed=seed), {"epochs": (100,)}, (17, 21), _FEWER
+        lambda seed, w, e: Convolution(6, e, seed=seed), {"epochs": (100,)}, (17, 21), _FEWER
     ),
     "recurrent": _Tuned(
-        lambda seed, w, e: _Recurrent(10, e, seed=seed), {"epochs": (100, 400)}, (21,), _FEWER
+        lambda seed, w, e: Recurrent(10, e, seed=seed), {"epochs": (100, 400)}, (21,), _FEWER
     ),
 }  # fmt: skip
 
-_runs = cache(_recorded)
+_runs = cache(recorded_parts)
 
 
 @cache
@@ -162,10 +164,10 @@ def _left_out(make, training: Cases) -> float:
 
 def _job(name: str, day: int) -> dict:
     """One rival on one day: the setting that leaving out runs chooses, and what it comes to."""
-    line, fitted, lost = _RIVALS[name], {}, {}
+    line, fitted, lost = RIVALS[name], {}, {}
     for setting in product(line.windows, *line.knobs.values()):
         fitted[setting] = line.make(day, *setting).fit(_cases(day, setting[0])["training"])
-    within = [s for s, rival in fitted.items() if rival.count() <= _BUDGET]
+    within = [s for s, rival in fitted.items() if rival.count() <= NUMBERS_BUDGET]
     for s in within or fitted:
         lost[s] = _left_out(lambda s=s: line.make(day, *s), _cases(day, s[0])["training"])
     best = min(lost, key=lost.get)
@@ -177,14 +179,14 @@ def _job(name: str, day: int) -> dict:
 @study
 def _tuned() -> dict:
     """Chosen settings, stored numbers and errors of each rival, day by day."""
-    jobs = [(name, day) for name, r in _RIVALS.items() for day in range(1, r.days + 1)]
+    jobs = [(name, day) for name, r in RIVALS.items() for day in range(1, r.days + 1)]
     with joblib.parallel_config("loky", n_jobs=-1, inner_max_num_threads=1):
-        found = dict(zip(jobs, joblib.Parallel()(joblib.delayed(_job)(*job) for job in jobs)))
+        entries = dict(zip(jobs, joblib.Parallel()(joblib.delayed(_job)(*job) for job in jobs)))
     rows = {}
-    for name, line in _RIVALS.items():
-        days = [found[name, day] for day in range(1, line.days + 1)]
+    for name, line in RIVALS.items():
+        days = [entries[name, day] for day in range(1, line.days + 1)]
         row = {key: [each[key] for each in days] for key in days[0]}
         row["errors"] = {k: [each["errors"][k] for each in days] for k in days[0]["errors"]}
-        row["within"] = max(row["count"]) <= _BUDGET
+        row["within"] = max(row["count"]) <= NUMBERS_BUDGET
         rows[name] = {"knobs": ["window", *line.knobs], **row}
-    return {"reference": _REFERENCE, "own": _BOOKS_OWN, "budget": _BUDGET, "rivals": rows}
+    return {"reference": REFERENCE, "own": OWN_RIVAL, "budget": NUMBERS_BUDGET, "rivals": rows}

@@ -36,21 +36,21 @@ from ddlib.learning import (
 from workshop import BOOK
 from workshop.report.code_hash import study
 
-_STEP = 0.01  # seconds between two samples, as in the report
+STEP = 0.01  # seconds between two samples, as in the report
 
 # Recordings of each design in which both torques were commanded and the torque is a current
-_RUNS = {
+RUNS = {
     "A0": ("A0_00", "A0_01", "A0_02", "A0_03", "A0_04", "A0_05"),
     "C0": ("C0_00", "C0_01", "C0_02"),
     "C1": ("C1_143339", "C1_143524", "C1_143601"),
 }
 _WIDTHS = tuple(paper.TABLE_4_1)
 _MARGIN, _EVERY = 20, 5  # samples: before the first case, from one case to the next
-_LENGTHS = (5, 7, 9, 11, 13, 17, 21, 25, 31, 41, 45)  # windows for derivatives, samples
+LENGTHS = (5, 7, 9, 11, 13, 17, 21, 25, 31, 41, 45)  # windows for derivatives, samples
 _AVERAGE = 21  # samples over which both sides of the equations are averaged
 _SETTLED = 13  # the window in front of it
 _STILL, _ENCODER = 8.0, 3.8147e-4  # Hz: all that moves the arm is below; rad: the encoder's step
-_BANDS = ((6, 12), (12, 25), (25, 50))  # Hz
+BANDS = ((6, 12), (12, 25), (25, 50))  # Hz
 _PENALTIES = tuple(10.0**-k for k in range(1, 8))
 _POINTS = (500, 1000, 2000, 4000, 8000)  # epochs of descent after which networks are tested
 START = 0.3
@@ -62,14 +62,21 @@ _MEMBERS, _ELBOW = 10, np.linspace(-1.5, 1.5, 7)  # networks that are read; rad
 
 
 def _published(m1, m2, l1, r1, r2, i1, i2, rotor, f1, f2) -> dict[str, float]:
-    """The builders' parameters (kg, m, kg m^2, N m) in the order of `_regressor`."""
+    """The builders' parameters (kg, m, kg m^2, N m) in the order of `regressor`."""
     a, d, g1 = i1 + i2 + m2 * l1**2 + 37 * rotor, i2 - 6 * rotor, 9.81 * (m1 * r1 + m2 * l1)
-    found = {"a": a, "b": m2 * l1 * r2, "d": d, "g1": g1, "g2": 9.81 * m2 * r2, "r": 42 * rotor}
-    return found | {"F_v1": 0.001, "F_v2": 0.001, "F_c1": f1, "F_c2": f2, "o1": 0.0, "o2": 0.0}
+    parameters = {
+        "a": a,
+        "b": m2 * l1 * r2,
+        "d": d,
+        "g1": g1,
+        "g2": 9.81 * m2 * r2,
+        "r": 42 * rotor,
+    }
+    return parameters | {"F_v1": 0.001, "F_v2": 0.001, "F_c1": f1, "F_c2": f2, "o1": 0.0, "o2": 0.0}
 
 
 # What the builders identified, by design: kg m^2, N m, N m s/rad; their gears are 6 to 1
-_PUBLISHED = {
+PUBLISHED = {
     "A0": _published(0.55938, 0.60435, 0.3, 0.3, 0.18378, 0.05347, 0.02392, 7.659e-5, 0.093, 0.078),
     "C0": _published(0.64169, 0.56394, 0.2, 0.2, 0.32127, 0.02671, 0.05388, 9.937e-5, 0.093, 0.078),
     "C1": _published(0.52346, 0.62557, 0.2, 0.2, 0.25569, 0.03189, 0.05087, 6.287e-5, 0.16, 0.12),
@@ -77,46 +84,48 @@ _PUBLISHED = {
 
 
 @cache
-def _recording(run: str, step: float = _STEP) -> tuple[np.ndarray, np.ndarray]:
+def recorded_run(run: str, step: float = STEP) -> tuple[np.ndarray, np.ndarray]:
     """Positions (rad) and measured torques (N m), ``(samples, 2)`` each: means over `step` s."""
-    with np.load(BOOK / "data" / "double-pendulum.npz") as kept:
-        t, *columns = kept[run][:, :5].astype(float).T
+    with np.load(BOOK / "data" / "double-pendulum.npz") as by_run:
+        t, *columns = by_run[run][:, :5].astype(float).T
     many = round(1000 * step)  # milliseconds
-    count = int((t[-1] - t[0]) / step)
-    fine = t[0] + 1e-3 * np.arange(count * many)
-    q1, q2, tau1, tau2 = (np.interp(fine, t, x).reshape(count, many).mean(1) for x in columns)
+    samples = int((t[-1] - t[0]) / step)
+    fine = t[0] + 1e-3 * np.arange(samples * many)
+    q1, q2, tau1, tau2 = (np.interp(fine, t, x).reshape(samples, many).mean(1) for x in columns)
     return np.stack([q1, q2], -1), np.stack([tau1, tau2], -1)
 
 
-def _regressor(states) -> np.ndarray:
+def regressor(states) -> np.ndarray:
     """Y with ``torque = Y @ parameters`` for states ``(cases, joint, 3)``: ``(cases, 2, 12)``."""
     q, v, a = np.moveaxis(states, -1, 0)
     friction = [x[..., None] * np.eye(2) for x in (v, np.tanh(v / 0.05), np.ones_like(v))]
     return np.concatenate([Arm.regressor(q, v, a), (a * [0, 1])[..., None], *friction], -1)
 
 
-def _states(q, width, step=_STEP, degree=3) -> np.ndarray:
-    found = [savgol_filter(q, width, degree, k, step, axis=0) for k in range(3)]
-    return np.stack(found, -1)
+def fitted_states(q, width, step=STEP, degree=3) -> np.ndarray:
+    """Position, velocity and acceleration by polynomials in windows, ``(samples, joint, 3)``."""
+    derivatives = [savgol_filter(q, width, degree, k, step, axis=0) for k in range(3)]
+    return np.stack(derivatives, -1)
 
 
-def _solved(rows, torque) -> np.ndarray:
+def parameters_of(rows, torque) -> np.ndarray:
     """Parameters by least squares, each joint in units of its torque's deviation."""
     spread = torque.std(0)
     a = (rows / spread[:, None]).reshape(-1, rows.shape[-1])
     return np.linalg.lstsq(a, (torque / spread).ravel())[0]
 
 
-def _smooth(x, width=_AVERAGE) -> np.ndarray:
+def smoothed(x, width=_AVERAGE) -> np.ndarray:
+    """Cubics in windows of so many samples, at their centres."""
     return savgol_filter(x, width, 3, axis=0)
 
 
 @cache
 def _still(run: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The motion below 8 Hz, as it is and as rounded readings, and its published torque; 100 Hz."""
-    fast = _STEP / 2
-    q = filtfilt(*butter(3, _STILL, fs=1 / fast), _recording(run, fast)[0], axis=0)
-    torque = _regressor(_states(q, 5, fast, 4)) @ np.array(list(_PUBLISHED[run[:2]].values()))
+    fast = STEP / 2
+    q = filtfilt(*butter(3, _STILL, fs=1 / fast), recorded_run(run, fast)[0], axis=0)
+    torque = regressor(fitted_states(q, 5, fast, 4)) @ np.array(list(PUBLISHED[run[:2]].values()))
     every, cut = (q, _ENCODER * np.round(q / _ENCODER), torque), len(q) // 2 * 2
     return tuple(x[:cut].reshape(-1, 2, 2).mean(1) for x in every)
 
@@ -125,17 +134,17 @@ def _found(runs, width, kind="measured") -> np.ndarray:
     """Parameters from derivatives over windows of `width` samples."""
     rows, torques = [], []
     for run in runs:
-        q, torque = _recording(run)
+        q, torque = recorded_run(run)
         if kind in ("smooth", "rounded", "wiggles"):
             smooth, rounded, torque = _still(run)
             q = {"smooth": smooth, "rounded": rounded, "wiggles": q}[kind]
-        y = _regressor(_states(q, width))
+        y = regressor(fitted_states(q, width))
         if kind == "averaged":
-            y, torque = _smooth(y), _smooth(torque)
+            y, torque = smoothed(y), smoothed(torque)
         inside = slice(width // 2 + _MARGIN, -width // 2 - _MARGIN)
         rows.append(y[inside])
         torques.append(torque[inside])
-    return _solved(np.concatenate(rows), np.concatenate(torques))
+    return parameters_of(np.concatenate(rows), np.concatenate(torques))
 
 
 def _jackknife(runs, *how) -> np.ndarray:
@@ -146,8 +155,8 @@ def _jackknife(runs, *how) -> np.ndarray:
 
 def _identified(runs) -> dict:
     kinds = ("measured", "averaged", "smooth", "rounded", "wiggles")
-    by_length = {kind: [_found(runs, w, kind) for w in _LENGTHS] for kind in kinds}
-    errors = [_jackknife(runs, w) for w in _LENGTHS]
+    by_length = {kind: [_found(runs, w, kind) for w in LENGTHS] for kind in kinds}
+    errors = [_jackknife(runs, w) for w in LENGTHS]
     settled = {"values": _found(runs, _SETTLED, "averaged")}
     settled["errors"] = _jackknife(runs, _SETTLED, "averaged")
     return {"by length": by_length, "errors by length": errors, "settled": settled}
@@ -155,13 +164,13 @@ def _identified(runs) -> dict:
 
 def _together(run) -> list[float]:
     """Correlation of the two joints' accelerations in some bands of frequency."""
-    fast = _STEP / 2
-    a = _states(_recording(run, fast)[0], 5, fast)[..., 2]
-    bands = (filtfilt(*butter(3, band, "bandpass", fs=1 / fast), a, axis=0) for band in _BANDS)
+    fast = STEP / 2
+    a = fitted_states(recorded_run(run, fast)[0], 5, fast)[..., 2]
+    bands = (filtfilt(*butter(3, band, "bandpass", fs=1 / fast), a, axis=0) for band in BANDS)
     return [float(np.corrcoef(x[_MARGIN:-_MARGIN].T)[0, 1]) for x in bands]
 
 
-def _windows(q, width, cases) -> np.ndarray:
+def centred_windows(q, width, cases) -> np.ndarray:
     """Windows around some samples, turned by whole turns so that their centres are within pi."""
     half = width // 2
     x = sliding_windows(q, width)[cases - half]
@@ -171,16 +180,17 @@ def _windows(q, width, cases) -> np.ndarray:
 @cache
 def _cases(run: str) -> dict:
     """What models see of a run, by name, and its torques."""
-    q, torque = _recording(run)
+    q, torque = recorded_run(run)
     cases = np.arange(_MARGIN, len(q) - _MARGIN, _EVERY)
-    seen = {width: _windows(q, width, cases) for width in _WIDTHS}
-    for width in _LENGTHS[:-4]:
-        y = _regressor(_states(q, width))
-        seen |= {(width, "plain"): y[cases], (width, "averaged"): _smooth(y)[cases]}
-    return {"torque": torque[cases], "smooth torque": _smooth(torque)[cases], **seen}
+    seen = {width: centred_windows(q, width, cases) for width in _WIDTHS}
+    for width in LENGTHS[:-4]:
+        y = regressor(fitted_states(q, width))
+        seen |= {(width, "plain"): y[cases], (width, "averaged"): smoothed(y)[cases]}
+    return {"torque": torque[cases], "smooth torque": smoothed(torque)[cases], **seen}
 
 
-def _all(runs, name) -> np.ndarray:
+def all_runs(runs, name) -> np.ndarray:
+    """Cases of several runs one after another: states of a window size, or torques."""
     return np.concatenate([_cases(run)[name] for run in runs])
 
 
@@ -191,7 +201,7 @@ def _error(guess, run) -> float:
 
 def _linear(runs, others, setting) -> list[float]:
     width, penalty = setting
-    x, y = _all(runs, width).reshape(-1, 2 * width), _all(runs, "torque")
+    x, y = all_runs(runs, width).reshape(-1, 2 * width), all_runs(runs, "torque")
     middle = x.mean(0)
     square = (x - middle).T @ (x - middle) + penalty * len(x) * np.eye(2 * width)
     w = np.linalg.solve(square, (x - middle).T @ (y - y.mean(0)))
@@ -201,14 +211,14 @@ def _linear(runs, others, setting) -> list[float]:
 
 def _rigid(runs, others, setting) -> list[float]:
     torque = "smooth torque" if setting[1] == "averaged" else "torque"
-    found = _solved(_all(runs, setting), _all(runs, torque))
-    return [_error(_cases(run)[setting] @ found, run) for run in others]
+    parameters = parameters_of(all_runs(runs, setting), all_runs(runs, torque))
+    return [_error(_cases(run)[setting] @ parameters, run) for run in others]
 
 
 def _tuned(model, settings, runs, others) -> list[float]:
     """Errors on other runs; the setting has the least mean log error on runs left out of these."""
-    kept = [([r for r in runs if r != out], [out]) for out in runs]
-    wrong = [sum(np.log(model(few, out, s)[0]) for few, out in kept) for s in settings]
+    splits = [([r for r in runs if r != out], [out]) for out in runs]
+    wrong = [sum(np.log(model(few, out, s)[0]) for few, out in splits) for s in settings]
     return model(runs, others, settings[int(np.argmin(wrong))])
 
 
@@ -218,13 +228,13 @@ def _learnt(x, y, members, **targets) -> tuple[TorqueModel, np.ndarray, dict]:
     how = {"rate": 66 / width, "momentum": 0.98, "warm_up": 500, "epochs": _POINTS[-1]}
     targets = {k: data.outputs.scale(v) for k, v in targets.items()}
     start = Weights.random(members, width, paper.HIDDEN_UNITS, initial=START)
-    made = train_ensemble(start, data, snapshots=_POINTS, progress=False, **how, **targets)
-    model, history, kept = made
-    models = {e: TorqueModel(w, data.inputs, data.outputs, _STEP) for e, w in kept.items()}
+    outcome = train_ensemble(start, data, snapshots=_POINTS, progress=False, **how, **targets)
+    model, history, weights = outcome
+    models = {e: TorqueModel(w, data.inputs, data.outputs, STEP) for e, w in weights.items()}
     return model, history.training[-1], models
 
 
-def _optimal(x, y, members, decay, steps) -> TorqueModel:
+def optimal_networks(x, y, members, decay, steps) -> TorqueModel:
     """Networks by Levenberg and Marquardt, with a trace of weight decay, converged or nearly."""
     data = TrainingSet.from_arrays(x, y, scaling=(-1, 1))
     start = Weights.random(members, x.shape[-1], paper.HIDDEN_UNITS, initial=START)
@@ -235,18 +245,20 @@ def _optimal(x, y, members, decay, steps) -> TorqueModel:
 
 def _split(runs) -> dict:
     """Networks of each window trained on some runs: errors on all others, and moments."""
-    others = [run for run in _RUNS[runs[0][:2]] if run not in runs]
+    others = [run for run in RUNS[runs[0][:2]] if run not in runs]
     tests, training = {}, []
     for width in _WIDTHS:
-        x = _all(runs, width)
-        model, error, models = _learnt(x, _all(runs, "torque"), 1)
+        x = all_runs(runs, width)
+        model, error, models = _learnt(x, all_runs(runs, "torque"), 1)
         training.append(float(error[0]))
         if width == _WIDTHS[1]:
-            models |= {d: _optimal(x, _all(runs, "torque"), 1, d, _STEPS) for d in _DECAYS}
+            models |= {
+                d: optimal_networks(x, all_runs(runs, "torque"), 1, d, _STEPS) for d in _DECAYS
+            }
         for how, one in models.items():
             for run in others:
                 tests[width, how, run] = _error(one.torque(_cases(run)[width])[0], run)
-    moments = gains(mean_gradient(model, x)[0], _STEP)  # of the widest window
+    moments = gains(mean_gradient(model, x)[0], STEP)  # of the widest window
     return {"tests": tests, "training": training, "moments": moments}
 
 
@@ -257,13 +269,13 @@ def _few(runs) -> list[tuple]:
 
 def _predicted(design) -> list[dict]:
     """Every choice of runs to train on, and every other run as the test."""
-    every = _RUNS[design]
+    every = RUNS[design]
     chosen = list(combinations(every, min(5, len(every) - 1)))
     needed = sorted({few for runs in chosen for few in (runs, *_few(runs))})
     with joblib.parallel_config("loky", n_jobs=-1, inner_max_num_threads=1):
         split = dict(zip(needed, joblib.Parallel()(map(joblib.delayed(_split), needed))))
     settings = [(w, e) for w in _WIDTHS for e in _POINTS] + [(_WIDTHS[1], d) for d in _DECAYS]
-    lengths = [(w, how) for w in _LENGTHS[:-4] for how in ("plain", "averaged")]
+    lengths = [(w, how) for w in LENGTHS[:-4] for how in ("plain", "averaged")]
     rows = []
     for runs in chosen:
         others = [run for run in every if run not in runs]
@@ -275,7 +287,7 @@ def _predicted(design) -> list[dict]:
         linear = _tuned(_linear, [(w, p) for w in _WIDTHS for p in _PENALTIES], runs, others)
         rigid = _tuned(_rigid, lengths, runs, others)
         seen = [_cases(run)[_WIDTHS[1]] for run in (*runs, *others)]
-        filtered = FilteredEquations(_regressor, _WIDTHS[1], _STEP)
+        filtered = FilteredEquations(regressor, _WIDTHS[1], STEP)
         filtered.fit(seen[: len(runs)], [_cases(run)["torque"] for run in runs])
         for k, run in enumerate(others):
             tests = {str(w): split[runs]["tests"][w, _POINTS[-1], run] for w in _WIDTHS}
@@ -291,67 +303,72 @@ def _predicted(design) -> list[dict]:
 
 def _slopes(states, parameters) -> np.ndarray:
     """How torques change with states, ``(cases, torque, joint, 3)``; friction by its best line."""
-    rigid, found = np.where(np.arange(12) < 6, parameters, 0.0), np.zeros((len(states), 2, 2, 3))
+    rigid, slopes = np.where(np.arange(12) < 6, parameters, 0.0), np.zeros((len(states), 2, 2, 3))
     for j, k in np.ndindex(2, 3):
         nudge = np.zeros((2, 3))
         nudge[j, k] = 1e-4
-        up, down = (_regressor(states + sign * nudge) @ rigid for sign in (1, -1))
-        found[..., j, k] = (up - down) / 2e-4
-    force = _regressor(states)[..., 6:10] @ parameters[6:10]
+        up, down = (regressor(states + sign * nudge) @ rigid for sign in (1, -1))
+        slopes[..., j, k] = (up - down) / 2e-4
+    force = regressor(states)[..., 6:10] @ parameters[6:10]
     v = states[..., 1]
-    found[:, [0, 1], [0, 1], 1] += (force * v).mean(0) / (v**2).mean(0)
-    return found
+    slopes[:, [0, 1], [0, 1], 1] += (force * v).mean(0) / (v**2).mean(0)
+    return slopes
 
 
 def _unrelated(runs, kind, seed) -> np.ndarray:
     """Torques of the same runs, or of others, moved in time around their ends."""
     rng, torques = np.random.default_rng(seed), [_cases(run)["torque"] for run in runs]
     sources = np.roll(np.arange(len(runs)), rng.integers(1, len(runs)))
-    moved = []
+    shifted = []
     for torque, source in zip(torques, sources):
         if kind == "other run":
             torque = np.resize(torques[source], torque.shape)
-        count = len(torque)
-        moved.append(np.roll(torque, rng.integers(count // 10, count - count // 10), axis=0))
-    return np.concatenate(moved)
+        samples = len(torque)
+        shifted.append(
+            np.roll(torque, rng.integers(samples // 10, samples - samples // 10), axis=0)
+        )
+    return np.concatenate(shifted)
 
 
 def _read(design, width) -> dict:
     """Moments of networks of all runs, of unrelated torques, and of the published equations'."""
-    runs, published = _RUNS[design], np.array(list(_PUBLISHED[design].values()))
-    x, torque = _all(runs, width), _all(runs, "torque")
+    runs, published = RUNS[design], np.array(list(PUBLISHED[design].values()))
+    x, torque = all_runs(runs, width), all_runs(runs, "torque")
 
     def cut(values):
         return values[_MARGIN : len(values) - _MARGIN : _EVERY]
 
-    states = np.concatenate([cut(_states(_recording(r)[0], _SETTLED)) for r in runs])
+    states = np.concatenate([cut(fitted_states(recorded_run(r)[0], _SETTLED)) for r in runs])
     slopes = _slopes(states, published)
     model, errors, _ = _learnt(x, torque, _MEMBERS)
     data = TrainingSet.from_arrays(x, torque, scaling=(-1, 1))
     row = {
         "published": slopes.mean(0),
-        "networks": gains(mean_gradient(model, x), _STEP),
-        "linear": gains(ridge_filters(data, [1e-6])[0], _STEP),
+        "networks": gains(mean_gradient(model, x), STEP),
+        "linear": gains(ridge_filters(data, [1e-6])[0], STEP),
         "training": errors,
     }
-    told = np.concatenate([cut(_still(r)[-1]) for r in runs])
+    published_torque = np.concatenate([cut(_still(r)[-1]) for r in runs])
     smooth = [_still(r)[0] for r in runs]
-    still = [_windows(q, width, cut(np.arange(len(q)))) for q in smooth]
-    for name, seen, goal in (("solved", x, torque), ("solved, known", np.concatenate(still), told)):
-        solved = _optimal(seen, goal, _MEMBERS // 2, _DECAYS[0], 2 * _STEPS)
-        row[name] = gains(mean_gradient(solved, seen), _STEP)
+    still = [centred_windows(q, width, cut(np.arange(len(q)))) for q in smooth]
+    for name, seen, goal in (
+        ("solved", x, torque),
+        ("solved, known", np.concatenate(still), published_torque),
+    ):
+        solved = optimal_networks(seen, goal, _MEMBERS // 2, _DECAYS[0], 2 * _STEPS)
+        row[name] = gains(mean_gradient(solved, seen), STEP)
     if width == _WIDTHS[-1]:
-        exact, *_ = _learnt(x, told, _MEMBERS)
-        row["exact"] = gains(mean_gradient(exact, x), _STEP)
+        exact, *_ = _learnt(x, published_torque, _MEMBERS)
+        row["exact"] = gains(mean_gradient(exact, x), STEP)
         for kind in ("shifted", "other run"):
             targets = np.stack([_unrelated(runs, kind, k) for k in range(_MEMBERS)])
             null, *_ = _learnt(x, torque, _MEMBERS, targets=targets)
-            row[kind] = gains(mean_gradient(null, x), _STEP)
+            row[kind] = gains(mean_gradient(null, x), STEP)
         place = np.digitize(x[:, 1, width // 2], _ELBOW)
         bins = [place == k for k in range(1, len(_ELBOW))]
         row["by elbow"] = {
-            "networks": [gains(mean_gradient(model, x[b]), _STEP)[..., 2] for b in bins],
-            "exact": [gains(mean_gradient(exact, x[b]), _STEP)[..., 2] for b in bins],
+            "networks": [gains(mean_gradient(model, x[b]), STEP)[..., 2] for b in bins],
+            "exact": [gains(mean_gradient(exact, x[b]), STEP)[..., 2] for b in bins],
             "published": [slopes[b].mean(0)[..., 2] for b in bins],
             "cases": [int(b.sum()) for b in bins],
         }
@@ -361,17 +378,17 @@ def _read(design, width) -> dict:
 @study
 def _two_link() -> dict:
     """What is identified, predicted and read, by design."""
-    designs, tasks = {}, [(design, width) for design in _RUNS for width in _WIDTHS]
+    designs, tasks = {}, [(design, width) for design in RUNS for width in _WIDTHS]
     with joblib.parallel_config("loky", n_jobs=-1, inner_max_num_threads=1):
-        made = joblib.Parallel()(joblib.delayed(_read)(*task) for task in tasks)
-    readings = dict(zip(tasks, made))
-    for design, runs in _RUNS.items():
+        outcomes = joblib.Parallel()(joblib.delayed(_read)(*task) for task in tasks)
+    readings = dict(zip(tasks, outcomes))
+    for design, runs in RUNS.items():
         designs[design] = {
             "runs": runs,
-            "published": _PUBLISHED[design],
+            "published": PUBLISHED[design],
             "identified": _identified(runs),
             "together": [_together(run) for run in runs],
             "predicted": _predicted(design),
             "read": {str(width): readings[design, width] for width in _WIDTHS},
         }
-    return {"lengths": _LENGTHS, "elbow": _ELBOW, "bands": _BANDS, "designs": designs}
+    return {"lengths": LENGTHS, "elbow": _ELBOW, "bands": BANDS, "designs": designs}

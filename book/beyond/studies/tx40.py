@@ -8,25 +8,25 @@ from functools import cache
 import numpy as np
 from scipy.optimize import minimize
 
-from beyond.others import _RealArm, staubli
+from beyond.others import RealArm, staubli
 from ddlib.analysis import savitzky_golay
 from ddlib.identification import joint_columns
 from ddlib.learning import TorqueModel, TrainingSet, Weights, train_ensemble
 
-_BLOCKS = 5  # of the recording; each is predicted by what was learnt on the others
-_RATES = {
+BLOCKS = 5  # of the recording; each is predicted by what was learnt on the others
+RATES = {
     100: (5, 11, 21, 41, 81),
     200: (11, 21, 41),
     500: (21, 81),
 }  # windows, by samples a second
 SLOTS = slice(40, 860)  # hundredths of a second that all windows fit around
-_RIDGES = tuple(10.0 ** np.arange(-10, 1))  # shares of the inputs' variance
+RIDGES = tuple(10.0 ** np.arange(-10, 1))  # shares of the inputs' variance
 _PIECES = 15  # of the recording, to choose a penalty by
 _DEGREE = 3  # of the polynomial whose derivatives are a window's states
 
 
 @cache
-def _recorded(rate: int) -> _RealArm:
+def _recorded(rate: int) -> RealArm:
     """The recording at so many samples a second."""
     return staubli().at(rate)
 
@@ -43,11 +43,11 @@ class Windowed:
     @classmethod
     def of(cls, rate: int, width: int) -> Windowed:
         """The cases of 100, 200 or 500 samples a second and of a window size."""
-        found, many = _recorded(rate), rate // 100
+        recording, many = _recorded(rate), rate // 100
         centres = np.arange(SLOTS.start, SLOTS.stop) * many + many // 2
         around = np.arange(width) - width // 2
-        x = found.q[centres[:, None] + around]
-        return cls(rate, width, np.moveaxis(x, 1, 2), found.current[centres])
+        x = recording.q[centres[:, None] + around]
+        return cls(rate, width, np.moveaxis(x, 1, 2), recording.current[centres])
 
     @property
     def step(self) -> float:
@@ -67,7 +67,7 @@ class Windowed:
 
     def folds(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """The masks of each block."""
-        return [self.fold(block) for block in range(_BLOCKS)]
+        return [self.fold(block) for block in range(BLOCKS)]
 
     @property
     def flat(self) -> np.ndarray:
@@ -80,7 +80,7 @@ class Windowed:
         return -(-self.width * 100 // self.rate)
 
 
-def _fold(cases: int, block: int, gap: int, blocks: int = _BLOCKS) -> tuple[np.ndarray, np.ndarray]:
+def _fold(cases: int, block: int, gap: int, blocks: int = BLOCKS) -> tuple[np.ndarray, np.ndarray]:
     """Masks of training and test cases: a block is tested, none within `gap` of it is learnt."""
     size, place = cases / blocks, np.arange(cases)
     first, last = (round((block + k) * size) for k in (0, 1))
@@ -116,17 +116,17 @@ class Ridge:
         return self.mean + (new - self.centre) @ self.filters(penalty)
 
 
-def _best_penalty(data: Windowed, training) -> float:
-    """The penalty of `_RIDGES` with the least error on pieces left out of the training cases."""
+def best_penalty(data: Windowed, training) -> float:
+    """The penalty of `RIDGES` with the least error on pieces left out of the training cases."""
     x, total = data.flat, 0.0
     for piece in range(_PIECES):
-        kept, tried = _fold(len(x), piece, data.gap, _PIECES)
-        kept, tried = kept & training, tried & training
+        learnt, tried = _fold(len(x), piece, data.gap, _PIECES)
+        learnt, tried = learnt & training, tried & training
         if tried.any():
-            made = Ridge(x[kept], data.current[kept])
-            error = [made.predict(x[tried], p) - data.current[tried] for p in _RIDGES]
+            ridge = Ridge(x[learnt], data.current[learnt])
+            error = [ridge.predict(x[tried], p) - data.current[tried] for p in RIDGES]
             total = total + (np.square(error) / data.current[training].var(0)).sum((1, 2))
-    return _RIDGES[int(np.argmin(total))]
+    return RIDGES[int(np.argmin(total))]
 
 
 def known_structure(states, current, new, friction: bool = True) -> np.ndarray:
@@ -160,7 +160,7 @@ class _Identified:
 
 def identified(states, current) -> _Identified:
     """The known structure fitted to states ``(cases, 6, 3)`` and currents ``(cases, 6)``."""
-    speed, found = states[..., 1], []
+    speed, by_joint = states[..., 1], []
     for j in range(current.shape[1]):
         a, free = joint_columns(states, j), joint_columns(states, j, friction=False)
         factors = _fitted(a, current[:, j])
@@ -172,31 +172,31 @@ def identified(states, current) -> _Identified:
         more = (joint_columns(pushed, j) - a) @ factors
         slope = np.linalg.lstsq(speed - speed.mean(0), rubbing - rubbing.mean(), rcond=None)[0][j]
         rest = a @ factors - rubbing
-        found.append((more.mean(), slope, *factors[place : place + 2], rubbing, rest))
-    inertia, slope, viscous, coulomb, rubbing, rest = zip(*found)
+        by_joint.append((more.mean(), slope, *factors[place : place + 2], rubbing, rest))
+    inertia, slope, viscous, coulomb, rubbing, rest = zip(*by_joint)
     arrays = map(np.array, (inertia, slope, viscous, coulomb))
     return _Identified(*arrays, np.stack(rubbing, -1), np.stack(rest, -1))
 
 
-_HIDDEN = 10  # as in 1988
+HIDDEN = 10  # as in 1988
 
 # Per sample of a window: one of six joints has three times the inputs of one of two.
 _DESCENT = {"rate": 22.0, "momentum": 0.995, "warm_up": 300}
 _SCALING = (-1.0, 1.0)  # of the inputs
-_EPOCHS = 2000  # of all networks but the longest
+EPOCHS = 2000  # of all networks but the longest
 
 
-def trained(x, y, members: int, seed: int, width: int, snapshots=(), targets=None, hidden=_HIDDEN,
-            epochs: int = _EPOCHS) -> tuple[TorqueModel, dict, TrainingSet]:  # fmt: skip
+def trained(x, y, members: int, seed: int, width: int, snapshots=(), targets=None, hidden=HIDDEN,
+            epochs: int = EPOCHS) -> tuple[TorqueModel, dict, TrainingSet]:  # fmt: skip
     """Networks by descent on windows and currents; models of `snapshots`; the data."""
     data = TrainingSet.from_arrays(x, y, scaling=_SCALING)
     start = Weights.random(members, width, hidden, x.shape[1], y.shape[1], seed=seed)
     scaled = None if targets is None else data.outputs.scale(targets)
-    model, _, kept = train_ensemble(
+    model, _, weights = train_ensemble(
         start, data, targets=scaled, rate=_DESCENT["rate"] / width, momentum=_DESCENT["momentum"],
         warm_up=_DESCENT["warm_up"], epochs=epochs, snapshots=snapshots, progress=False,
     )  # fmt: skip
-    models = {e: TorqueModel(w, data.inputs, data.outputs) for e, w in kept.items()}
+    models = {e: TorqueModel(w, data.inputs, data.outputs) for e, w in weights.items()}
     return model, models, data
 
 
@@ -206,12 +206,12 @@ def wrong(predicted, data: Windowed, cases) -> np.ndarray:
     return (error**2).mean(-2) / data.current.var(0)
 
 
-def _both(model: TorqueModel, data: Windowed, fold) -> list[np.ndarray]:
+def errors_of_fold(model: TorqueModel, data: Windowed, fold) -> list[np.ndarray]:
     """Errors of a fold: on what was learnt, and on the block left out."""
     return [wrong(model.torque(data.x[part]), data, part) for part in fold]
 
 
-def _decayed(x, y, start: Weights, decay: float, steps: int = 300) -> TorqueModel:
+def decayed_network(x, y, start: Weights, decay: float, steps: int = 300) -> TorqueModel:
     """One network by quasi-Newton steps on half the mean squared error with weight decay."""
     data = TrainingSet.from_arrays(x, y, scaling=_SCALING)
     flat = data.x.reshape(len(data.x), -1)
@@ -238,5 +238,5 @@ def _decayed(x, y, start: Weights, decay: float, steps: int = 300) -> TorqueMode
         return value / 2, np.concatenate([s.ravel() for s in slopes])
 
     begin = np.concatenate([getattr(start, name).ravel() for name in names])
-    found = minimize(objective, begin, jac=True, method="L-BFGS-B", options={"maxiter": steps})
-    return TorqueModel(Weights(*parts(found.x)), data.inputs, data.outputs)
+    optimum = minimize(objective, begin, jac=True, method="L-BFGS-B", options={"maxiter": steps})
+    return TorqueModel(Weights(*parts(optimum.x)), data.inputs, data.outputs)

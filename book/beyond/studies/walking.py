@@ -56,15 +56,15 @@ def _histories(cases: int, seed: int, target: str = "smooth") -> np.ndarray:
         since = np.arange(cases)[:, None] % _HOLD  # samples since the last jump
         when = -STEP * (since + _HOLD * np.ceil((np.arange(3) - since) / _HOLD))
     for _ in range(3):
-        moved, wanted = rng.uniform(*_SIZES, (2, cases, 1))
+        swings, wanted = rng.uniform(*_SIZES, (2, cases, 1))
         w = 2 * np.pi * rng.uniform(*_FREQUENCIES, (cases, 1))
         first, second = rng.uniform(0, 2 * np.pi, (2, cases, 1))
-        error += moved * np.sin(w * t + first) - wanted * np.sin(w * when + second)
-        velocity += moved * w * np.cos(w * t + first)
+        error += swings * np.sin(w * t + first) - wanted * np.sin(w * when + second)
+        velocity += swings * w * np.cos(w * t + first)
     return np.concatenate([error, velocity], axis=1)
 
 
-def _trained(x, y, seed: int, longer: bool = False) -> tuple[list, float]:
+def trained_copy(x, y, seed: int, longer: bool = False) -> tuple[list, float]:
     """A network of the same sizes that learnt y from x, and its training RMSS.
 
     The longer training is annealed, and in single precision, which takes half the time.
@@ -99,10 +99,10 @@ def _trained(x, y, seed: int, longer: bool = False) -> tuple[list, float]:
         if longer:
             slower.step()
     arrays = [w.detach().double().numpy() for w in start]
-    made = [(w[:, :-1].copy(), w[:, -1].copy()) for w in arrays]
-    made[0] = made[0][0] / spread, made[0][1] - made[0][0] / spread @ middle
-    made[-1] = made[-1][0] * y.std(), made[-1][1] * y.std() + y.mean()
-    return made, float(np.sqrt(loss.detach()))
+    copy = [(w[:, :-1].copy(), w[:, -1].copy()) for w in arrays]
+    copy[0] = copy[0][0] / spread, copy[0][1] - copy[0][0] / spread @ middle
+    copy[-1] = copy[-1][0] * y.std(), copy[-1][1] * y.std() + y.mean()
+    return copy, float(np.sqrt(loss.detach()))
 
 
 @study
@@ -119,7 +119,7 @@ def _walking() -> dict:
         learnt = {"copies": (x, y), "shuffled": (x, shuffled), "longer": (x, y)}
         learnt |= {target: (z, torque(z, network)) for target, z in others.items()}
         for name, (z, goal) in learnt.items():
-            copy, error = _trained(z, goal, seed, name == "longer")
+            copy, error = trained_copy(z, goal, seed, name == "longer")
             row = {"error": error, "gradient": gradient(z, copy).mean(0)}
             rows.setdefault(name, []).append(row)
     drawn = []
@@ -131,5 +131,5 @@ def _walking() -> dict:
         ]
         drawn.append(gradient(x, random).mean(0) * y.std() / torque(x, random).std())
     own = gradient(x, network).mean(0)
-    told = {f"network, {target}": gradient(z, network).mean(0) for target, z in others.items()}
-    return {"step": STEP, "network": own, **told, "random": np.array(drawn), **rows}
+    by_target = {f"network, {target}": gradient(z, network).mean(0) for target, z in others.items()}
+    return {"step": STEP, "network": own, **by_target, "random": np.array(drawn), **rows}

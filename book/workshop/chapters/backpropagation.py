@@ -32,12 +32,12 @@ def monomials(values, coding: str = "bits") -> np.ndarray:
     shaped("values", values, (2 ** integer("bits of values", bits, 1),))
     if (values != np.round(values)).any():
         raise ValueError("values must be whole numbers")
-    table = values.astype(np.int64).reshape((2,) * bits)  # one axis for each bit
+    values_by_bits = values.astype(np.int64).reshape((2,) * bits)  # one axis for each bit
     for axis in range(bits):
-        off, on = np.split(table, 2, axis)
+        off, on = np.split(values_by_bits, 2, axis)
         pair = (off, on - off) if coding == "bits" else (off + on, off - on)
-        table = np.concatenate(pair, axis)
-    flat = table.ravel()
+        values_by_bits = np.concatenate(pair, axis)
+    flat = values_by_bits.ravel()
     return flat if coding == "bits" else flat / 2**bits
 
 
@@ -221,9 +221,9 @@ def _exercise(number: int, *given) -> Exercise:
             ),
             (bound(lambda a: 2 * (1 - a)), "momentum allows larger steps, not smaller."),
         ]
-        told = "at this step size a root leaves the unit circle, at −1."
+        reason = "at this step size a root leaves the unit circle, at −1."
         hint = "for which r does the first root reach size 1?"
-        return Exercise("function", bound(lambda a: 2 * (1 + a)), told, slips, hint)
+        return Exercise("function", bound(lambda a: 2 * (1 + a)), reason, slips, hint)
     elif number == 2:
         misses = {eta: abs(given[0](eta)) for eta in 10.0 ** -np.arange(1, 13)}
         best = min(misses, key=misses.get)
@@ -231,8 +231,8 @@ def _exercise(number: int, *given) -> Exercise:
             (Between(5e-324, best), "such a small change drowns in rounding."),  # above 0
             (Between(best), "with such a large change the curvature spoils the slope."),
         ]
-        told = f"{scientific(best)} is best; it misses {scientific(misses[best])} of the slope."
-        return Exercise("number", Between(best / 11, 11 * best), told, slips)
+        reason = f"{scientific(best)} is best; it misses {scientific(misses[best])} of the slope."
+        return Exercise("number", Between(best / 11, 11 * best), reason, slips)
     else:
         descend, x, d, level = given
         end = cache(lambda mine: descend(x, d, *mine, epochs=1000, warm_up=0)[1][-1])
@@ -240,11 +240,11 @@ def _exercise(number: int, *given) -> Exercise:
             (lambda mine: not end(mine) <= 1, "the descent went astray: the steps are too large.")
         ]
         hint = f"the training RMSS must fall below {level / 2:.2f} within 1,000 epochs."
-        told = "with momentum many small steps add up, so you need less patience."
+        reason = "with momentum many small steps add up, so you need less patience."
         return Exercise(
             "numbers",
             lambda mine: end(mine) < level / 2,
-            told,
+            reason,
             slips,
             hint,
             count=2,
@@ -291,13 +291,13 @@ def chain_rule() -> Measured:
 
 def _reach(history: History, level: float = _LEVEL) -> np.ndarray:
     """Epochs after which each member's training error first falls below a level."""
-    found = []
+    epochs = []
     for error in history.training.T:
         first = next(iter(np.flatnonzero(error < level)), None)
         k = slice(max((first or 0) - 1, 0), (first or 0) + 1)
         there = np.interp(-level, -error[k], history.epochs[k])
-        found.append(np.inf if first is None else float(there))
-    return np.array(found)
+        epochs.append(np.inf if first is None else float(there))
+    return np.array(epochs)
 
 
 def acceleration() -> Measured:
@@ -357,10 +357,10 @@ def network(name: str = "binary counter", most: int = 10, large: int = 1024) -> 
 
 def stable(widths=WINDOWS) -> Measured:
     """Change of all weights over the second half of training, the largest median of a window."""
-    found = {width: _late_change(width) for width in widths}
-    half, last, _ = found[widths[0]]
-    value = max(change for *_, change in found.values())
-    text = ", ".join(f"{significant(100 * c, 2)} % at {w}" for w, (*_, c) in found.items())
+    changes = {width: _late_change(width) for width in widths}
+    half, last, _ = changes[widths[0]]
+    value = max(change for *_, change in changes.values())
+    text = ", ".join(f"{significant(100 * c, 2)} % at {w}" for w, (*_, c) in changes.items())
     return Measured(value, f"{text}, from epoch {half:,} to {last:,}")
 
 

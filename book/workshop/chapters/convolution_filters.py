@@ -56,15 +56,15 @@ def reported() -> dict[str, np.ndarray]:
     At window 21 the purest of a name, at 41, where the report shows rough edges, the roughest.
     """
     rows = {w: results.networks(w).weights.hidden_weights.reshape(-1, w) for w in (21, 41)}
-    found = {}
+    filters = {}
     for figure, (width, name, _) in _REPORT.items():
         if width == 21:
             f = purest(rows[width], name)
         else:
             fitting = rows[width][classify(rows[width]) == name]
             f = fitting[roughness(fitting).argmax()]
-        found[figure] = upright(f)
-    return found
+        filters[figure] = upright(f)
+    return filters
 
 
 def _joint(f: np.ndarray) -> int:
@@ -101,10 +101,10 @@ def puzzles() -> dict[str, np.ndarray]:
 
     Each is per radian of its joint.
     """
-    gain, found = results.networks(21).inputs.gain, reported()
+    gain, filters = results.networks(21).inputs.gain, reported()
     rows = {"landing page": carried()}
     for label, figure in {"A": "Figure 5-6", "B": "Figure 5-4", "C": "Figure 5-5"}.items():
-        rows[label] = gain[_joint(found[figure])] * found[figure]
+        rows[label] = gain[_joint(filters[figure])] * filters[figure]
     return rows
 
 
@@ -133,8 +133,8 @@ def _said() -> None:
     """What the lesson says in words about committed results."""
     study = results.read("targets")
     unnamed = {
-        size: resampled(found["not analysable"], np.mean)
-        for size, found in zip(study["initial"], study["by initial"]["real torques"])
+        size: resampled(names["not analysable"], np.mean)
+        for size, names in zip(study["initial"], study["by initial"]["real torques"])
     }
     stated("filters-start-hides", (unnamed[0.03] < 0.5) & (unnamed[0.3] > 0.5))
     stated("filters-own-difference", builder.score(builder.starts()["Second difference"]) > 0.9)
@@ -206,7 +206,7 @@ def _exercise(number: int, given, step: float = 0.0) -> Exercise:
         powers = np.array([0.1 + 0 * k, k, k**2])  # along the motion, in samples
         parts = powers * step ** np.arange(3.0)[:, None] @ given
         names = "position", "velocity", "acceleration"
-        told = ", ".join(f"{part:.3g} to the {name}" for part, name in zip(parts, names))
+        answers = ", ".join(f"{part:.3g} to the {name}" for part, name in zip(parts, names))
         slips = [
             (parts @ (1, 1, 2), "the second moment counts half."),
             (parts @ (1, -1, 1), "time runs to the right: mind the sign of the velocity."),
@@ -217,7 +217,7 @@ def _exercise(number: int, given, step: float = 0.0) -> Exercise:
         return Exercise(
             "number",
             parts.sum(),
-            f"a row adds up its answers, here {told}.",
+            f"a row adds up its answers, here {answers}.",
             slips,
             "multiply each derivative by its sum over the weights, as in the formula, and add.",
         )

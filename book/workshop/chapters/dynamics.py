@@ -75,19 +75,22 @@ def _exercise(number: int, M=None) -> Exercise:
             (lag, "the sign. Which way does the forearm turn?"),
             (-1.0, "then the forearm would keep its direction. Does it?"),
         )
-        told = "seen from above, the forearm even turns backwards."
+        reason = "seen from above, the forearm even turns backwards."
         return Exercise(
             "number",
             -lag,
-            told,
+            reason,
             slips,
             "the elbow's torque is zero. What follows from the second row?",
             unit="rad/s²",
         )
     elif number == 2:
-        told, unseen = "this change leaves both torques as they are.", MultipleOf((-2.0, 1.0, -1.0))
+        reason, unseen = (
+            "this change leaves both torques as they are.",
+            MultipleOf((-2.0, 1.0, -1.0)),
+        )
         return Exercise(
-            "numbers", unseen, told, otherwise="write down both torques with the elbow straight."
+            "numbers", unseen, reason, otherwise="write down both torques with the elbow straight."
         )
     else:
         size = lambda x: excitation(pick_and_place(np.reshape(x, (2, 2)), _TIMES))  # noqa: E731
@@ -336,8 +339,8 @@ def ignoring_terms() -> Measured:
 @cache
 def _coverage() -> np.ndarray:
     plant = (ARM, _SETUP.controller, APPENDIX_I[:5], _SETUP.effects)
-    found = least_squares(by_modulation(repeat(*plant, repetitions=200, seed=1)))
-    return found.covers(true_parameters(ARM, _SETUP.effects, RIGID + FRICTION))
+    estimate = least_squares(by_modulation(repeat(*plant, repetitions=200, seed=1)))
+    return estimate.covers(true_parameters(ARM, _SETUP.effects, RIGID + FRICTION))
 
 
 def identification() -> Measured:

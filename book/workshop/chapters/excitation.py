@@ -44,11 +44,11 @@ def cell(drive: str, seconds: float = 0.0) -> dict:
     return next(c for c in cells if (c["drive"], c["left out"]) == (drive, seconds))
 
 
-def half_measured(found: Mapping) -> np.ndarray:
+def half_measured(row: Mapping) -> np.ndarray:
     """Penalty at which half of the arm's inertia is left, by day; NaN where it is never reached."""
     places = np.log(results.read("excitation")["penalties"])
     halves = []
-    for mass in np.array(found["ridge"]) / found["arm"] - 0.5:
+    for mass in np.array(row["ridge"]) / row["arm"] - 0.5:
         k = np.flatnonzero(mass > 0)[-1:]  # the last penalty with more than half
         share = mass[k] / (mass[k] - mass[k + 1])
         halves.append(np.exp(places[k] + share * (places[k + 1] - places[k])) if k.size else np.nan)
@@ -87,9 +87,9 @@ def foretold_over_found(recording: Recording, setup: Setup, width: int = 21) -> 
 
 def mass_of_networks(drive: str, seconds: float = 0.0) -> Measured:
     """Inertia of networks after all epochs, as a share of the arm's: the median."""
-    found = cell(drive, seconds)
-    share = np.array(found["descent"]["M11"])[-1] / found["arm"]
-    error = np.median(found["descent"]["error"][-1])
+    row = cell(drive, seconds)
+    share = np.array(row["descent"]["M11"])[-1] / row["arm"]
+    error = np.median(row["descent"]["error"][-1])
     text = "{:.2f} of the arm's inertia, " + f"training RMSS {error:.2f}"
     return judged(median, share, text=text.format)
 
@@ -106,18 +106,18 @@ def mass_survives(shown: Mapping[str, Sequence], alt: str) -> Illustration:
 
     def draw(figure: Figure):
         left, right = figure.subplots(1, 2, sharey=True)
-        arm = np.mean([found["arm"] for found in chosen.values()])
+        arm = np.mean([row["arm"] for row in chosen.values()])
         for axis in (left, right):
             axis.axhline(arm, color=INK, ls="--", lw=1.0)
             axis.set(xscale="log", ylim=(-0.5, 9.0))
-        for k, (name, found) in enumerate(chosen.items()):
-            style = {"color": COLOURS[k % len(COLOURS)], "ls": ("-", "--")[found["left out"] > 0]}
-            left.plot(penalties, np.median(found["ridge"], 0), lw=1.9, **style)
-            half = np.median(found["half"])
-            left.plot(half, found["arm"] / 2, "D", color=style["color"], mfc="none", ms=6, mew=1.6)
-            mass = np.array(found["descent"]["M11"])  # epoch, member
+        for k, (name, row) in enumerate(chosen.items()):
+            style = {"color": COLOURS[k % len(COLOURS)], "ls": ("-", "--")[row["left out"] > 0]}
+            left.plot(penalties, np.median(row["ridge"], 0), lw=1.9, **style)
+            half = np.median(row["half"])
+            left.plot(half, row["arm"] / 2, "D", color=style["color"], mfc="none", ms=6, mew=1.6)
+            mass = np.array(row["descent"]["M11"])  # epoch, member
             right.plot(epochs, np.median(mass, 1), lw=1.9, label=name, **style)
-            for x, values in ((epochs[-1], mass[-1]), (apart * 1.3**k, found["solver"]["M11"])):
+            for x, values in ((epochs[-1], mass[-1]), (apart * 1.3**k, row["solver"]["M11"])):
                 low, middle, high = np.percentile(values, (0, 50, 100))
                 right.plot([x, x], [low, high], color=style["color"], lw=1.2)
                 right.plot(x, middle, "os^Dv*"[k % 6], color=style["color"], ms=4)
@@ -141,17 +141,17 @@ def mass_survives(shown: Mapping[str, Sequence], alt: str) -> Illustration:
 
 def described(shown: Mapping[str, Sequence]) -> str:
     """The picture of `mass_survives` in words, for those who cannot see it."""
-    study, told = results.read("excitation"), []
+    study, sentences = results.read("excitation"), []
     for name, key in shown.items():
-        found = cell(*key)
-        ridge, trained = np.median(found["ridge"], 0), np.median(found["descent"]["M11"], 1)
-        told.append(
+        row = cell(*key)
+        ridge, trained = np.median(row["ridge"], 0), np.median(row["descent"]["M11"], 1)
+        sentences.append(
             f"{name}: linear filters {ridge[0]:.1f} with the least penalty, half of the arm's at "
-            f"a penalty of {np.median(found['half']):.0e} by theory; networks {trained[-1]:.1f} "
-            f"after {study['epochs'][-1]:,} epochs, {np.median(found['solver']['M11']):.1f} by the "
+            f"a penalty of {np.median(row['half']):.0e} by theory; networks {trained[-1]:.1f} "
+            f"after {study['epochs'][-1]:,} epochs, {np.median(row['solver']['M11']):.1f} by the "
             "solver"
         )
-    return "Inertia of the shoulder, kg m². " + "; ".join(told) + "."
+    return "Inertia of the shoulder, kg m². " + "; ".join(sentences) + "."
 
 
 class MassAndPenalty(CurveWidget):

@@ -113,13 +113,13 @@ class Exercise:
 
         Slips that are one answer come before a near miss, and a near miss before wide slips.
         """
-        told = [(slip, self.tolerance, f"Wrong: {why}") for slip, why in self.slips]
-        wide = [isinstance(slip, (Between, Callable)) for slip, *_ in told]
+        slips = [(slip, self.tolerance, f"Wrong: {why}") for slip, why in self.slips]
+        wide = [isinstance(slip, (Between, Callable)) for slip, *_ in slips]
         return [
             (self.right, self.tolerance, f"Right: {self.told}"),
-            *(case for case, late in zip(told, wide) if not late),
+            *(case for case, late in zip(slips, wide) if not late),
             *_near(self.right, self.tolerance),
-            *(case for case, late in zip(told, wide) if late),
+            *(case for case, late in zip(slips, wide) if late),
         ]
 
     def size(self) -> int:
@@ -174,8 +174,8 @@ def _said(answer, exercise: Exercise) -> str:
     for unfit, why in exercise.unless:
         if unfit(answer):
             raise NotJudged(f"Not judged: {why}{_echo(answer, exercise)}")
-    found = (said for wanted, close, said in exercise.cases() if _is(answer, wanted, close))
-    return next(found, f"Wrong: {exercise.otherwise}")
+    said_if_so = (said for wanted, close, said in exercise.cases() if _is(answer, wanted, close))
+    return next(said_if_so, f"Wrong: {exercise.otherwise}")
 
 
 def _named(error: Exception) -> str:
@@ -241,16 +241,16 @@ def _function(mine) -> Callable:
 
     def called(*inputs, **named):
         try:
-            found = mine(*inputs, **named)
+            value = mine(*inputs, **named)
         except Exception as error:
             raise NotJudged(f"Your function raised {_named(error)[:-1]}; not judged.") from None
         try:
-            fine = np.isfinite(np.asarray(found, dtype=float)).all()
+            fine = np.isfinite(np.asarray(value, dtype=float)).all()
         except (TypeError, ValueError):
             fine = False
         if not fine:
-            raise NotJudged(f"Your function returned {reprlib.repr(found)}; not judged.")
-        return found
+            raise NotJudged(f"Your function returned {reprlib.repr(value)}; not judged.")
+        return value
 
     return called
 
@@ -348,9 +348,9 @@ class Waiting:
         if not self._kept(right, close):
             return None
         kept = [{**one, "said": said} for *wanted, said in cases for one in self._kept(*wanted)]
-        told = {"unit": self.exercise.unit, "options": [*map(str.lower, self.exercise.options)]}
-        told["unfit"] = f"Not judged: write {_either(self.exercise.options)}."
-        return {"cases": kept, "otherwise": f"Wrong: {self.exercise.otherwise}", **told}
+        words = {"unit": self.exercise.unit, "options": [*map(str.lower, self.exercise.options)]}
+        words["unfit"] = f"Not judged: write {_either(self.exercise.options)}."
+        return {"cases": kept, "otherwise": f"Wrong: {self.exercise.otherwise}", **words}
 
     def _kept(self, wanted, close: float) -> list[dict]:
         if isinstance(wanted, str):
@@ -369,15 +369,15 @@ class Waiting:
         return [{"low": low.tolist(), "high": high.tolist()}]
 
     def _repr_html_(self) -> str:
-        told, data = self.RUN, self.data()
+        words, data = self.RUN, self.data()
         kept = ""
         if data:
             packed = base64.b64encode(json.dumps(data).encode()).decode()
-            kept, told = (
+            kept, words = (
                 f' data-judge="{packed}"',
                 "Switch on scripts, and this page judges your answer.",
             )
         return (
             f'<div class="exercise-answer"{kept}><span class="lab">{self.WORDS}</span>'
-            f'<span class="page" style="display:none">{told}</span></div>'
+            f'<span class="page" style="display:none">{words}</span></div>'
         )

@@ -90,12 +90,12 @@ _RUNS = ("training", "trajectory 6")  # Where errors are taken
 def _features(width: int, setup: str) -> tuple:
     """Windows and hidden activities in rows, and torques, in training and on trajectory 6."""
     runs = committed.training(setup), committed.recording(setup)[5]
-    model, found = committed.networks(width, setup), []
+    model, parts = committed.networks(width, setup), []
     for run in runs:
         windows, torque = cases(run, width)
         hidden = model.weights.activity(model.scaled(windows))[0]
-        found.append((windows.reshape(len(windows), -1), hidden, torque))
-    return tuple(found)
+        parts.append((windows.reshape(len(windows), -1), hidden, torque))
+    return tuple(parts)
 
 
 def linear_alone(width: int = 21, setup: str = JOINT_DAMPING.name) -> np.ndarray:
@@ -107,11 +107,11 @@ def linear_alone(width: int = 21, setup: str = JOINT_DAMPING.name) -> np.ndarray
 @cache
 def beside_linear() -> dict:
     """By set-up and window: training and test errors of a linear filter, and of the networks."""
-    found = {(name, w): [linear_alone(w, name)] for name, w in product(SETUPS, WINDOWS)}
-    for (name, w), each in found.items():
+    by_place = {(name, w): [linear_alone(w, name)] for name, w in product(SETUPS, WINDOWS)}
+    for (name, w), each in by_place.items():
         networks = errors(committed.networks(w, name), committed.recording(name))
         each.append(np.stack([networks.training, networks.test], -1))
-    return found
+    return by_place
 
 
 def at_work() -> Illustration:
@@ -177,10 +177,10 @@ def _quoted() -> None:
     quote("global-without-pure", np.median(rest / whole))
 
 
-def _read(found: dict, what: str) -> np.ndarray:
+def _read(row: dict, what: str) -> np.ndarray:
     """R² with which a probe reads the velocity or the acceleration from each network's units."""
     columns = {"velocity": [0, 2], "acceleration": [1, 3]}[what]
-    return np.array(found["probe"])[:, columns].mean(-1)
+    return np.array(row["probe"])[:, columns].mean(-1)
 
 
 def stated_beside_linear() -> None:
@@ -229,25 +229,27 @@ def _exercise(number: int, *given) -> Exercise:
             (1 / np.sqrt(10), "that is the share that remains, not the share that cancels."),
             (0.9, "deviations do not add up. What does?"),
         ]
-        told, otherwise = "variances add up.", "what of unrelated signals adds up?"
-        return Exercise("number", 1 - 1 / np.sqrt(10), told, slips, otherwise)
+        reason, otherwise = "variances add up.", "what of unrelated signals adds up?"
+        return Exercise("number", 1 - 1 / np.sqrt(10), reason, slips, otherwise)
     elif number == 2:
         units, window = given
         right = "larger" if units > window else "smaller"
-        told = f"the error is {units:.3f} from the units alone, {window:.3f} from the window."
+        reason = f"the error is {units:.3f} from the units alone, {window:.3f} from the window."
         return Exercise(
             "word",
             right,
-            told,
+            reason,
             otherwise="how many numbers does a window have, and how many units are there?",
             options=("larger", "smaller"),
         )
     else:
         errors_with, alone = given
-        told = "your units have less error than the window alone has, in training and in the test."
+        reason = (
+            "your units have less error than the window alone has, in training and in the test."
+        )
         otherwise = "one of the two errors is not smaller. Try sizes that are ten times apart."
         return Exercise(
-            "number", lambda x: all(np.less(errors_with(x), alone)), told, otherwise=otherwise
+            "number", lambda x: all(np.less(errors_with(x), alone)), reason, otherwise=otherwise
         )
 
 
@@ -287,11 +289,11 @@ def compensate_friction(width: int = 21, setup: str = JOINT_DAMPING.name) -> Mea
         return y - axes @ (axes.T @ y)
 
     known = [curved(y.reshape(-1, 2)) for y in (chosen.effects.friction_torque(speed), rigid)]
-    rest, told = [curved(each) for each in sums], []
+    rest, medians = [curved(each) for each in sums], []
     for name, parts in (("friction", known[:1]), ("rigid body", known[1:]), ("together", known)):
         fits = np.array(
             [[explained(x[:, j], *(k[:, j] for k in parts)) for j in (0, 1)] for x in rest]
         )
-        told.append("{} {:.2f} and {:.2f}".format(name, *np.median(fits, axis=0)))
-    text = f"R² {'; '.join(told)}, shoulder and elbow"
+        medians.append("{} {:.2f} and {:.2f}".format(name, *np.median(fits, axis=0)))
+    text = f"R² {'; '.join(medians)}, shoulder and elbow"
     return judged(lambda each: np.median(each, axis=1).max(-1), fits, text=text)

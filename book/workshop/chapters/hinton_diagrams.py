@@ -61,8 +61,8 @@ def printed_windows() -> figures.Illustration:
             axis = figure.add_subplot(place)
             hinton_on(axis, networks[width], ring=rings.get(width))
             sizes = paper.LARGEST_WEIGHT[width], networks[width].largest
-            told = "largest printed {:g}, ours {:.1f}".format(*sizes)
-            axis.set_title(f"Figure 5-{k + 1}, window {width}:\n{told}")
+            largest = "largest printed {:g}, ours {:.1f}".format(*sizes)
+            axis.set_title(f"Figure 5-{k + 1}, window {width}:\n{largest}")
 
     alt = (
         "Three Hinton diagrams, of windows of 11, 21 and 41 samples. At 21 one row of a hidden "
@@ -73,8 +73,8 @@ def printed_windows() -> figures.Illustration:
 
 def _largest() -> dict[str, dict[int, np.ndarray]]:
     """Largest weights of 25 networks, by reading and window."""
-    table = results.read("table-4-1")["setups"]
-    return {s: {w: np.array(table[s][str(w)]["largest weight"]) for w in WINDOWS} for s in SETUPS}
+    cells = results.read("table-4-1")["setups"]
+    return {s: {w: np.array(cells[s][str(w)]["largest weight"]) for w in WINDOWS} for s in SETUPS}
 
 
 def largest_weights() -> Table:
@@ -233,11 +233,11 @@ def _exercise(number: int, given) -> Exercise:
         rough = {e: np.median(roughness(w.direct_weights)) for e, w in sorted(given.items())}
         tenth = next((e for e, value in rough.items() if value < 0.1 * rough[0]), np.inf)
         early = Between(-np.inf, tenth), "this is too early. How large is the start?"
-        told = f"in your network it happened by epoch {tenth:,}."
+        reason = f"in your network it happened by epoch {tenth:,}."
         return Exercise(
             "number",
             Between(tenth / 2, 2 * tenth),
-            told,
+            reason,
             [early],
             "this is too late.",
             unit="epochs",
@@ -252,7 +252,7 @@ def _least_weight(s) -> float:
     unit = s / s.max()  # numbers of one size for the linear programme
     sums = np.stack([0 * unit + 1, unit, unit**2 / 2])
     both = np.concatenate([np.eye(s.size), -np.eye(s.size)])
-    found = linprog(
+    optimum = linprog(
         np.append(np.zeros(s.size), 1.0),
         A_ub=np.column_stack([both, -np.ones(2 * s.size)]),
         b_ub=np.zeros(2 * s.size),
@@ -260,7 +260,7 @@ def _least_weight(s) -> float:
         b_eq=[0, 0, 1],
         bounds=[*[(None, None)] * s.size, (0, None)],
     )
-    return found.x[-1] / s.max() ** 2
+    return optimum.x[-1] / s.max() ** 2
 
 
 def adjacency(width: int = 11, epochs: int = 100) -> Measured:

@@ -98,11 +98,11 @@ def _inertias() -> dict[str, float]:
 
 
 def _dynamics(axis):
-    hand = _motion()["hand"]
+    links = _motion()["hand"]
     for k, alpha in ((0, 0.3), ((_window().start + _window().stop) // 2, 0.6), (-1, 1.0)):
-        axis.plot(*np.vstack([[0, 0], hand[k]]).T, "o-", color=_BLUE, alpha=alpha, ms=5, lw=3)
-    axis.plot(*hand[:, 1].T, color=figures.FAINT, lw=1)
-    axis.plot(*hand[_window(), 1].T, color=_ORANGE, lw=3.5)
+        axis.plot(*np.vstack([[0, 0], links[k]]).T, "o-", color=_BLUE, alpha=alpha, ms=5, lw=3)
+    axis.plot(*links[:, 1].T, color=figures.FAINT, lw=1)
+    axis.plot(*links[_window(), 1].T, color=_ORANGE, lw=3.5)
     axis.set(aspect="equal", xlim=(-0.05, 1.0), ylim=(-0.75, 0.05))
 
 
@@ -242,9 +242,9 @@ def _quoted() -> None:
     quote("index-sentences", len(tried))
     quote("index-reproduced", cards.tally(tried)["reproduced"])
     at = trial.row(WIDTH)
-    found = {"real": at["real"], **{kind: at["nulls"][kind] for kind in ("shifted", "phases")}}
+    by_torques = {"real": at["real"], **{kind: at["nulls"][kind] for kind in ("shifted", "phases")}}
     velocity, acceleration = (
-        {kind: trial.share(x, "hidden", [name]) for kind, x in found.items()}
+        {kind: trial.share(x, "hidden", [name]) for kind, x in by_torques.items()}
         for name in ("velocity", "acceleration")
     )
     unrelated = [resampled(acceleration[kind], np.mean) for kind in ("shifted", "phases")]

@@ -41,24 +41,24 @@ def gradients() -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
     begin = Weights.random(1, _WIDTH, TRIAL.hidden, initial=INITIAL)
     weights = trained(list(_LEARNT), Weights.concatenate([begin] * len(_LEARNT)))
     windows, torque = cases(training, _WIDTH)
-    found = {}
+    by_torques = {}
     for k, (kind, name) in enumerate(_LEARNT.items()):
         data = given(kind)
         model = TorqueModel(weights[k : k + 1], data.inputs, data.outputs, LOG_STEP)
-        found[name] = mean_gradient(model, windows)[0]
+        by_torques[name] = mean_gradient(model, windows)[0]
     flat = windows.reshape(len(windows), -1)
     fit, *_ = np.linalg.lstsq(flat - flat.mean(0), torque, rcond=None)
-    found["this arm's torques, by least squares"] = fit.T.reshape(2, 2, _WIDTH)
+    by_torques["this arm's torques, by least squares"] = fit.T.reshape(2, 2, _WIDTH)
     q = training.q_true[:, training.motion]
     own, other = (arm.mass_matrix(q).mean((0, 1)) for arm in (TRIAL.arm, IMI_ARM))
-    return found, {name: other if "another" in name else own for name in found}
+    return by_torques, {name: other if "another" in name else own for name in by_torques}
 
 
 def inertia_beside() -> Illustration:
     """The shoulder's inertia in networks of the arm's torques and of unrelated ones."""
     row = trial.row(_WIDTH)
     sets = {"real": row["real"], **trial.matched(row)}
-    inertia = {kind: np.array(found["gains"])[:, 0, 0, 2] for kind, found in sets.items()}
+    inertia = {kind: np.array(cell["gains"])[:, 0, 0, 2] for kind, cell in sets.items()}
     return of_torques({"shoulder's inertia, kg m²": inertia}, _arm())
 
 
@@ -189,9 +189,9 @@ def _said() -> None:
     every = excitation.results.read("excitation")["cells"]
     reached = [np.isfinite(excitation.half_measured(each)).all() for each in every]
     stated("inertia-half-but-one", sum(reached) == len(every) - 1)
-    found, known = gradients()
+    by_torques, known = gradients()
     x = LOG_STEP * (np.arange(_WIDTH) - _WIDTH // 2)
-    mass = {name: (g @ x**2 / 2)[0, 0] for name, g in found.items()}
+    mass = {name: (g @ x**2 / 2)[0, 0] for name, g in by_torques.items()}
     near = [abs(mass[n] / known[n][0, 0] - 1) < 0.3 for n in mass if "shifted" not in n]
     stated("inertia-of-either-arm", all(near))
     shares = start.shares_beside(TRIAL.name, INITIAL, "velocity")

@@ -91,9 +91,9 @@ def folded(name: str, head: str, table: Table) -> _Markdown:
 
 def legend() -> _Markdown:
     """What each sign means; with a script they are buttons that filter."""
-    told = {word: f"{word}, {OWN[word]}" for word in ("reproduced", "not reproduced", "undecided")}
+    words = {word: f"{word}, {OWN[word]}" for word in ("reproduced", "not reproduced", "undecided")}
     signs = (
-        f'<span data-verdict="{word}">{mark(word)} {told.get(word, word)}</span>'
+        f'<span data-verdict="{word}">{mark(word)} {words.get(word, word)}</span>'
         for word in (*WORDS, *LISTS)
     )
     return _Markdown(f'<p class="claim-legend">{" ".join(signs)}</p>')
@@ -104,15 +104,15 @@ def counts() -> Table:
     system, methods = of_kind("system"), of_kind("methods")
     rows = {"all readings": tally(system, Claim.judge), **by_reading(system, Claim.judge)}
     rows["methods of others"] = tally(methods, Claim.judge)
-    cells = [(name, sum(found.values()), *found.values()) for name, found in rows.items()]
+    cells = [(name, sum(by_word.values()), *by_word.values()) for name, by_word in rows.items()]
     return Table(("cards", "all", *WORDS), cells)
 
 
 def findings() -> Table:
     """How many findings of this book held, failed and are open."""
-    found = [card.word(Claim.judge).partition(" (")[0] for card in of_kind("own")]
+    shown = [card.word(Claim.judge).partition(" (")[0] for card in of_kind("own")]
     words = "held", "failed", "open"
-    return Table(("findings", *words), [(len(found), *map(found.count, words))])
+    return Table(("findings", *words), [(len(shown), *map(shown.count, words))])
 
 
 def both() -> Table:
@@ -149,8 +149,10 @@ def _card(card: Card) -> str:
         where = f"best {named}{mark(best.sign(Claim.judge))} · {where}"
     head = f"{mark(sign)} <b>{word}</b> <span>{says}{strip}</span> <small>{where}</small>"
     rows = [claim for row in card.rows.values() for claim in row]
-    told = ", ".join(f"{found} with {reading}" for reading, found in spread.items())
-    inside = [told and f"By reading, the best first: {told}.", _grid(card), _tiles(rows)]
+    readings = ", ".join(
+        f"{verdict_word} with {reading}" for reading, verdict_word in spread.items()
+    )
+    inside = [readings and f"By reading, the best first: {readings}.", _grid(card), _tiles(rows)]
     if card.beside:
         inside += ["Beside it, not decisive:", _tiles(card.beside)]
     return _fold(card.id, sign, head, filter(None, inside))
@@ -200,17 +202,17 @@ def errata(path: Path = _FILE) -> Table:
 def _filled(kind: str, fields: tuple, path: Path, values: dict[str, str]) -> list[tuple]:
     """The entries of a file, as rows, with values in place of their names."""
     text, rows = path.read_text(encoding="utf-8"), []
-    for count, entry in enumerate(yaml.safe_load(text), 1):
+    for number, entry in enumerate(yaml.safe_load(text), 1):
         if not isinstance(entry, dict) or set(entry) != set(fields):
-            raise ValueError(f"{kind} {count} must have the fields {fields}, got {entry!r}")
+            raise ValueError(f"{kind} {number} must have the fields {fields}, got {entry!r}")
         if not all(isinstance(text, str) and text.strip() for text in entry.values()):
-            raise ValueError(f"{kind} {count} must be of texts that are not empty, got {entry!r}")
+            raise ValueError(f"{kind} {number} must be of texts that are not empty, got {entry!r}")
         try:
             cells = [Template(entry[field]).substitute(values) for field in fields]
         except (KeyError, ValueError) as error:
             known = ", ".join(f"${name}" for name in values)
             raise ValueError(
-                f"{kind} {count} ({entry[fields[0]]}) must name computed values, {known}: {error}"
+                f"{kind} {number} ({entry[fields[0]]}) must name computed values, {known}: {error}"
             ) from None
         rows.append(tuple(map(typeset, cells)))
     return rows
@@ -273,8 +275,8 @@ def _pair(row, columns=("training", "test")) -> str:
 
 
 def _table_4_1() -> dict[str, str]:
-    table = results.read("table-4-1")["setups"]
-    state, printed = table["state feedback"], paper.HIDDEN_UNITS
+    setups = results.read("table-4-1")["setups"]
+    state, printed = setups["state feedback"], paper.HIDDEN_UNITS
     longer, clean = (results.read(name) for name in ("longer", "clean"))
     units = {row["units"]: row for row in results.read("hidden-units")["rows"]}
     sizes = {row["width"]: row for row in results.read("window-sizes")["rows"]}
@@ -287,7 +289,7 @@ def _table_4_1() -> dict[str, str]:
     weight = ("training", "test", "largest weight")
     return {
         "state": _both(state),
-        "position": _both(table["position feedback"]),
+        "position": _both(setups["position feedback"]),
         "gains": f"kp {KP[0]:g} / {KP[1]:g} N m/rad, kd {KD[0]:g} / {KD[1]:g} N m s/rad",
         "damping": _both(results.read("recordings")["setups"][JOINT_DAMPING.name]),
         "runs": _runs(),
@@ -318,7 +320,7 @@ def _runs() -> str:
 
 
 def _table_6_1() -> dict[str, str]:
-    table = results.read("table-6-1")
+    study = results.read("table-6-1")
     first, *choices = results.read("state-space-choices")["rows"]
 
     def sets(errors, deviation="own deviation"):
@@ -327,14 +329,14 @@ def _table_6_1() -> dict[str, str]:
     def options(row):
         return f"step {row['rate']:g}, momentum {row['momentum']:g}, initial ±{row['initial']:g}"
 
-    drawn = [[np.median(d["errors"][s]["own deviation"]) for d in table["draws"]] for s in _SETS]
+    drawn = [[np.median(d["errors"][s]["own deviation"]) for d in study["draws"]] for s in _SETS]
     return {
         "options": options(first),
         "chosen": sets(first["errors"]),
         "other_options": "; ".join(f"{options(row)}: {sets(row['errors'])}" for row in choices),
-        "sets": sets(table["errors"]),
-        "sets_by_a": sets(table["errors"], "deviation of set A"),
-        "draws": str(len(table["draws"])),
+        "sets": sets(study["errors"]),
+        "sets_by_a": sets(study["errors"], "deviation of set A"),
+        "draws": str(len(study["draws"])),
         "drawn": " · ".join(f"{significant(min(x), 2)} to {significant(max(x), 2)}" for x in drawn),
     }
 

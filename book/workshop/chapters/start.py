@@ -44,10 +44,10 @@ def cells(method: str = "descent", scaling: str = PRINTED) -> dict:
 
 def values(reading: str, size: float, width: int, *path: str, **where) -> np.ndarray:
     """What a cell keeps of its networks, shape (networks,)."""
-    found = cells(**where)[reading][str(size)][str(width)]
+    kept = cells(**where)[reading][str(size)][str(width)]
     for name in path:
-        found = found[name]
-    return np.array(found, float)
+        kept = kept[name]
+    return np.array(kept, float)
 
 
 def named(reading: str, size: float, width: int = 21, layer: str = "hidden", **where):
@@ -84,10 +84,10 @@ def four_starts(unit: int = 0, seed: int = 0) -> figures.Illustration:
         axes[0].set_ylabel("weight")
         figures.legend_above(figure, *axes[0].get_legend_handles_labels())
 
-    told = "; ".join(f"±{size:g}: {classify(after)}" for size, (_, after) in rows.items())
+    names = "; ".join(f"±{size:g}: {classify(after)}" for size, (_, after) in rows.items())
     alt = (
         "Weights of one hidden unit over its window of 21 samples, before and after training, in "
-        f"four panels from the largest to the smallest start, with their names: {told}."
+        f"four panels from the largest to the smallest start, with their names: {names}."
     )
     return figures.illustrate(draw, alt, 7.0, 2.5)
 
@@ -97,17 +97,17 @@ def four_starts(unit: int = 0, seed: int = 0) -> figures.Illustration:
 
 def agreement_table() -> Table:
     """Share of networks in which each remark of the report comes out, by range."""
-    found = {
+    agreements = {
         size: [agreement(cells()[reading][str(size)]) for reading in SETUPS] for size in RANGES
     }
     rows = []
-    for remark in found[RANGES[0]][0]:
-        each = (100 * np.mean([cell[remark] for cell in found[size]]) for size in RANGES)
+    for remark in agreements[RANGES[0]][0]:
+        each = (100 * np.mean([cell[remark] for cell in agreements[size]]) for size in RANGES)
         rows.append((remark, *(f"{share:.0f} %" for share in each)))
     scores = chosen(cells())[1]
     rows.append(("remarks met, of 7", *(f"{scores[size]:.1f}" for size in RANGES)))
     for k, reading in enumerate(SETUPS):
-        each = (sum(found[size][k].values()) for size in RANGES)
+        each = (sum(agreements[size][k].values()) for size in RANGES)
         rows.append((f"{reading} alone", *(f"{score:.1f}" for score in each)))
     each = (
         np.mean([sum(agreement(cells()[r][str(size)], "direct").values()) for r in SETUPS])
@@ -157,8 +157,10 @@ def by_range() -> figures.Illustration:
         )
         for title, measure in _PANELS.items()
     }
-    told = " ".join(f"{title}, from ±0.01 to ±1: {end}." for title, end in ends.items())
-    return figures.illustrate(draw, f"Four panels over the range of the start. {told}", 7.0, 2.6)
+    ends_in_words = " ".join(f"{title}, from ±0.01 to ±1: {end}." for title, end in ends.items())
+    return figures.illustrate(
+        draw, f"Four panels over the range of the start. {ends_in_words}", 7.0, 2.6
+    )
 
 
 def lazy_table() -> Table:
@@ -169,11 +171,11 @@ def lazy_table() -> Table:
             100 * np.mean([named(r, size, scaling=scaling).mean() for r in SETUPS])
             for scaling in (PRINTED, "-1 to 1")
         )
-        moved = (
+        medians = (
             np.median(values(STATE_FEEDBACK.name, size, 21, what)) for what in ("turn", "kernel")
         )
-        told = (*(f"{x:.0f} %" for x in shares), *(f"{x:.2f}" for x in moved))
-        rows.append((f"±{size:g}", *told))
+        texts = (*(f"{x:.0f} %" for x in shares), *(f"{x:.2f}" for x in medians))
+        rows.append((f"±{size:g}", *texts))
     heads = ("named, inputs 0 to 1", "named, inputs −1 to 1", "turn, state feedback")
     return Table(("start", *heads, "kernel's change, state feedback"), rows)
 
@@ -201,9 +203,9 @@ def p_more(reading: str, size: float, name: str, layer: str = "hidden") -> float
     How likely a network of unrelated torques has as large a share as those of the real torques
     have on average.
     """
-    found = shares_beside(reading, size, name, layer)
-    real = found.pop("real").mean()
-    return max(p_value(real, null, "more") for null in found.values())
+    shares = shares_beside(reading, size, name, layer)
+    real = shares.pop("real").mean()
+    return max(p_value(real, null, "more") for null in shares.values())
 
 
 def beside_unrelated() -> figures.Illustration:
@@ -230,15 +232,15 @@ def beside_unrelated() -> figures.Illustration:
             row[0].set_ylabel(f"{name} filters, %")
         figures.legend_above(figure, *axes[0, 0].get_legend_handles_labels())
 
-    told = []
+    medians = []
     for reading in SETUPS:
         for size in sizes:
             found = shares_beside(reading, size, "acceleration")
             each = ", ".join(f"{_KINDS[k]} {100 * np.median(x):.0f} %" for k, x in found.items())
-            told.append(f"{reading}, ±{size:g}: {each}")
+            medians.append(f"{reading}, ±{size:g}: {each}")
     alt = (
         "Shares of hidden filters named acceleration and velocity at window 21, medians and the "
-        f"middle 90 % of networks. Acceleration: {'; '.join(told)}."
+        f"middle 90 % of networks. Acceleration: {'; '.join(medians)}."
     )
     return figures.illustrate(draw, alt, 7.0, 4.0)
 
@@ -283,7 +285,7 @@ def other_torques(members: int = 8) -> dict[str, tuple[float, np.ndarray]]:
         "another arm": IMI_ARM.inverse_dynamics(*states),
         "exchanged": training.tau[:, training.motion, ::-1],
     }
-    found = {}
+    by_torques = {}
     for name, torque in wanted.items():
         given = TrainingSet.from_arrays(windows, torque.reshape(-1, 2), scaling=TRIAL.scaling)
         model, *_ = train_ensemble(
@@ -291,8 +293,8 @@ def other_torques(members: int = 8) -> dict[str, tuple[float, np.ndarray]]:
             momentum=TRIAL.momentum, warm_up=TRIAL.warm_up, epochs=TRIAL.epochs, progress=False,
         )  # fmt: skip
         share = (classify(model.weights.hidden_weights) == "acceleration").mean()
-        found[name] = float(share), gains(mean_gradient(model, windows), LOG_STEP)[:, 0, 0, 2]
-    return found
+        by_torques[name] = float(share), gains(mean_gradient(model, windows), LOG_STEP)[:, 0, 0, 2]
+    return by_torques
 
 
 def other_inertia() -> float:
@@ -344,12 +346,12 @@ def more_names(small: float = 0.03, large: float = 0.3) -> Measured:
     At window 21, in the reading where the difference is least.
     """
     pairs = [tuple(named(r, s) for s in (small, large)) for r in SETUPS]
-    told = (f"{100 * a.mean():.0f} % against {100 * b.mean():.0f} %" for a, b in pairs)
+    compared = (f"{100 * a.mean():.0f} % against {100 * b.mean():.0f} %" for a, b in pairs)
 
     def least(*drawn):
         return np.min([mean(a) - mean(b) for a, b in zip(drawn[::2], drawn[1::2])], axis=0)
 
-    return judged(least, *(cell for pair in pairs for cell in pair), text=_by_reading(told))
+    return judged(least, *(cell for pair in pairs for cell in pair), text=_by_reading(compared))
 
 
 def turned(small: float = 0.03, large: float = 1.0) -> Measured:
@@ -364,44 +366,44 @@ def kernel_moved(small: float = 0.03, large: float = 1.0) -> Measured:
 
 def _difference(what: str, small: float, large: float) -> Measured:
     pairs = [tuple(values(r, s, 21, what) for s in (small, large)) for r in SETUPS]
-    told = (f"{np.median(a):.2f} against {np.median(b):.2f}" for a, b in pairs)
+    compared = (f"{np.median(a):.2f} against {np.median(b):.2f}" for a, b in pairs)
 
     def least(*drawn):
         return np.min([median(a) - median(b) for a, b in zip(drawn[::2], drawn[1::2])], axis=0)
 
-    return judged(least, *(cell for pair in pairs for cell in pair), text=_by_reading(told))
+    return judged(least, *(cell for pair in pairs for cell in pair), text=_by_reading(compared))
 
 
 def better_tests(small: float = 0.03, large: float = 0.3) -> Measured:
     """Test error at window 21 from a small start over that from a large one, the worst reading."""
     pairs = [tuple(values(r, s, 21, "test") for s in (small, large)) for r in SETUPS]
-    told = (f"{np.median(a):.3f} against {np.median(b):.3f}" for a, b in pairs)
+    compared = (f"{np.median(a):.3f} against {np.median(b):.3f}" for a, b in pairs)
 
     def worst(*drawn):
         return np.max([median(a) / median(b) for a, b in zip(drawn[::2], drawn[1::2])], axis=0)
 
-    return judged(worst, *(cell for pair in pairs for cell in pair), text=_by_reading(told))
+    return judged(worst, *(cell for pair in pairs for cell in pair), text=_by_reading(compared))
 
 
 def beyond_unrelated() -> Measured:
     """The largest p-value, over readings and ranges, of acceleration filters of real torques."""
     sizes = results.read("start-nulls")["ranges"]
-    found = {(r, s): p_more(r, s, "acceleration") for r in SETUPS for s in sizes}
-    (reading, size), most = max(found.items(), key=lambda item: item[1])
-    text = f"p at most {most:.3f} ({reading}, ±{size:g}), at least {min(found.values()):.3f}"
+    p_values = {(r, s): p_more(r, s, "acceleration") for r in SETUPS for s in sizes}
+    (reading, size), most = max(p_values.items(), key=lambda item: item[1])
+    text = f"p at most {most:.3f} ({reading}, ±{size:g}), at least {min(p_values.values()):.3f}"
     return Measured(most, text)
 
 
 def velocity_beyond_unrelated() -> Measured:
     """The smallest p-value, over readings and ranges, of velocity filters of the real torques."""
     sizes = results.read("start-nulls")["ranges"]
-    found = {(r, s): p_more(r, s, "velocity") for r in SETUPS for s in sizes}
-    (reading, size), least = min(found.items(), key=lambda item: item[1])
+    p_values = {(r, s): p_more(r, s, "velocity") for r in SETUPS for s in sizes}
+    (reading, size), least = min(p_values.items(), key=lambda item: item[1])
     return Measured(least, f"p at least {least:.3f} ({reading}, ±{size:g})")
 
 
-def _by_reading(told) -> str:
-    return "; ".join(f"{reading} {one}" for reading, one in zip(SETUPS, told))
+def _by_reading(texts) -> str:
+    return "; ".join(f"{reading} {one}" for reading, one in zip(SETUPS, texts))
 
 
 def _quoted() -> None:
@@ -418,12 +420,12 @@ def _quoted() -> None:
     places = [(r, s) for r in SETUPS for s in nulls["ranges"]]
     p = {place: p_more(*place, "acceleration") for place in places}
     clear = [place for place in places if p[place] < 0.05]
-    told = f"In {len(clear)} of {len(places)} cases"
+    in_cases = f"In {len(clear)} of {len(places)} cases"
     if len(clear) == len(places):
-        told = f"In all {len(places)} cases"
+        in_cases = f"In all {len(places)} cases"
     quote(
         "start-nulls-told",
-        f"{told} fewer than one in twenty of the unrelated networks have as many acceleration "
+        f"{in_cases} fewer than one in twenty of the unrelated networks have as many acceleration "
         "filters as the real ones have on average.",
     )
     direct = shares_beside(STATE_FEEDBACK.name, best, "acceleration", "direct")
@@ -470,7 +472,7 @@ def _said() -> None:
     stated("start-waits", waits.pop(STATE_FEEDBACK.name) > 1.2)
     stated("start-waits-no-longer", np.all([longer < 1.2 for longer in waits.values()], 0))
     this, other = results.read("excitation")["cells"][0]["arm"], other_inertia()
-    number = {name: resampled(found) for name, (_, found) in other_torques().items()}
+    number = {name: resampled(inertia) for name, (_, inertia) in other_torques().items()}
     stated("start-number-this", np.abs(number["own"] - this) < np.abs(number["own"] - other))
     number = number["another arm"]
     stated("start-number-other", np.abs(number - other) < np.abs(number - this))

@@ -68,8 +68,8 @@ def _pairs(rows: list[dict]) -> Table | None:
         if "ratio" in row:
             cells = [_duration(row[side]["seconds"]) for side in ("ours", "other")]
             cells.append(f"{significant(row['ratio'])}{_GAP}×")
-            found = ((key, row["details"][key]) for key in beside)
-            cells += [f"{x:.0%}" if k.startswith("share") else significant(x) for k, x in found]
+            details = ((key, row["details"][key]) for key in beside)
+            cells += [f"{x:.0%}" if k.startswith("share") else significant(x) for k, x in details]
         lines.append((row["what"], *cells, _outcome(row)))
     names = (first["ours"]["name"], first["other"]["name"])
     return Table(("what", *names, "ratio", *beside, "target"), lines)

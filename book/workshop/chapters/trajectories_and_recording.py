@@ -252,17 +252,17 @@ def random_draws(resolution: float = 0.1) -> Measured:
 def samples() -> Measured:
     """Samples of one motion in the log."""
     recording = committed.recording()
-    count = recording.t[recording.motion].size
-    return Measured(count, f"{count} at {1 / LOG_STEP:.0f} a second")
+    size = recording.t[recording.motion].size
+    return Measured(size, f"{size} at {1 / LOG_STEP:.0f} a second")
 
 
 def cases() -> Measured:
     """Windows of the five training recordings: with the rests, and inside the motions."""
     q, motion = committed.training().q, committed.training().motion
-    count = sliding_windows(q, WINDOWS[0], motion)[..., 0, 0].size  # as many for all windows
+    whole = sliding_windows(q, WINDOWS[0], motion)[..., 0, 0].size  # as many for all windows
     inside = [sliding_windows(q[:, motion], w)[..., 0, 0].size for w in WINDOWS]
-    text = f"{count:,} with the rests; windows within the motions give "
-    return Measured(count, text + ", ".join(f"{n:,}" for n in inside))
+    text = f"{whole:,} with the rests; windows within the motions give "
+    return Measured(whole, text + ", ".join(f"{n:,}" for n in inside))
 
 
 def _missed(recording: Recording) -> float:

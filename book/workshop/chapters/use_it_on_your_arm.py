@@ -29,8 +29,8 @@ def four_answers() -> figures.Illustration:
     log = record(arm, controller, random_extents(6, seed=1), effects=effects)[:5]
     windows = cases(log, 21)[0]
     real = TrainingSet.from_recording(log, 21, scaling=(-1, 1))
-    moved = surrogate("shifted", log.tau[:, log.motion], seed=0).reshape(-1, 2)
-    shifted = TrainingSet.from_arrays(windows, moved, scaling=(-1, 1))
+    shifted_torque = surrogate("shifted", log.tau[:, log.motion], seed=0).reshape(-1, 2)
+    shifted = TrainingSet.from_arrays(windows, shifted_torque, scaling=(-1, 1))
     start = Weights.random(members=3, width=21, hidden=10)
     how = {"momentum": 0.98, "warm_up": 500, "epochs": 3000, "progress": False}
 
@@ -48,11 +48,11 @@ def four_answers() -> figures.Illustration:
     )
 
 
-def _drawn(found) -> figures.Illustration:
+def _drawn(answers) -> figures.Illustration:
     def draw(figure):
         axis = figure.subplots()
         handles = []
-        for k, (name, values) in enumerate(found.items()):
+        for k, (name, values) in enumerate(answers.items()):
             y = np.stack([values[:, i, j] for i, j in _ENTRIES.values()])
             x = np.broadcast_to(np.arange(3)[:, None] + 0.16 * (k - 1.5), y.shape)
             look = {"color": figures.COLOURS[k], "marker": "_os^"[k], "ls": ""}
@@ -62,14 +62,14 @@ def _drawn(found) -> figures.Illustration:
         axis.axhline(0, color=figures.FAINT, lw=0.7)
         axis.set_xticks(range(3), _ENTRIES)
         axis.set(ylabel="inertia, kg m²", xlim=(-0.5, 2.5))
-        figures.legend_above(figure, handles, list(found))
+        figures.legend_above(figure, handles, list(answers))
 
-    told = "; ".join(
+    medians = "; ".join(
         f"{name}: "
         + ", ".join(f"{e} {np.median(v[:, i, j]):.2f}" for e, (i, j) in _ENTRIES.items())
-        for name, v in found.items()
+        for name, v in answers.items()
     )
-    alt = f"Inertia of an arm in kg m². {told}.".replace("-", "−")
+    alt = f"Inertia of an arm in kg m². {medians}.".replace("-", "−")
     return figures.illustrate(draw, alt, 7.0, 2.7)
 
 

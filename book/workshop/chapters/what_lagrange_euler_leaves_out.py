@@ -166,7 +166,7 @@ def torques_left() -> dict[str, np.ndarray]:
     exact, rounded = (
         _drive(law=estimated, friction=own.friction, encoder=e).tau_true for e in ((), rounding)
     )
-    found = {"rigid body": tau, "rigid body, reference": arm.inverse_dynamics(*reference)}
+    torques = {"rigid body": tau, "rigid body, reference": arm.inverse_dynamics(*reference)}
     for name, effects in {
         "viscous friction": {"friction": (viscous,)},
         "Coulomb friction": {"friction": (coulomb,)},
@@ -174,8 +174,8 @@ def torques_left() -> dict[str, np.ndarray]:
         "flexible shaft": {"transmission": (_SHAFT,)},
         "ripple of 2 %": {"motor": (Ripple(share=(0.02, 0.02)),)},
     }.items():
-        found[name] = _left(None, **effects)
-    found |= {
+        torques[name] = _left(None, **effects)
+    torques |= {
         "Stribeck excess": excess,
         "dead zone": DeadZone((0.1, 0.1)).inverse(tau) - tau,
         "hold of 2 ms": change / np.sqrt(12),
@@ -190,8 +190,8 @@ def torques_left() -> dict[str, np.ndarray]:
             arm.inverse_dynamics(*(sliding_window_view(q, width, 0) @ w for w in smooth))
             for q in (log, rounding[0].apply(log))
         )
-        found[f"encoder, acceleration {name}"] = other - one
-    return {name: rms(torque) for name, torque in found.items()}
+        torques[f"encoder, acceleration {name}"] = other - one
+    return {name: rms(torque) for name, torque in torques.items()}
 
 
 def _quoted() -> None:
@@ -229,13 +229,13 @@ def _exercise(number: int, arm=None, kp=None, other=None, extents=None) -> Exerc
     elif number == 2:
         ideal, half, whole = map(path, (0.0, 0.5, 1.0))
         share = rms(half - ideal, None) / rms(whole - ideal, None)
-        told = "how wide is the dead zone after the correction?"
+        hint = "how wide is the dead zone after the correction?"
         return Exercise(
             "number",
             share,
             "the correction leaves a dead zone of half the width.",
             (),
-            told,
+            hint,
             tolerance=0.1,
         )
     else:

@@ -126,8 +126,8 @@ def _torque_along(t, exact, predicted) -> Illustration:
 
 def _errors() -> dict[str, np.ndarray]:
     """Errors of the book's 25 networks on each set, by its own deviation."""
-    found = results.read("table-6-1")["errors"]
-    return {name: np.array(each["own deviation"]) for name, each in found.items()}
+    by_set = results.read("table-6-1")["errors"]
+    return {name: np.array(each["own deviation"]) for name, each in by_set.items()}
 
 
 def _states() -> np.ndarray:
@@ -162,9 +162,9 @@ def table_6_1(yours) -> Table:
         yours,
         strict=True,
     ):  # fmt: skip
-        found = claims.measured(f"table-6-1-{claim}")
-        ends = np.quantile(found.replicates, (0.025, 0.975))
-        middle, low, high = (significant(x, 2) for x in (found.value, *ends))
+        measured = claims.measured(f"table-6-1-{claim}")
+        ends = np.quantile(measured.replicates, (0.025, 0.975))
+        middle, low, high = (significant(x, 2) for x in (measured.value, *ends))
         ours = f"{middle} ({low} to {high})"
         rows.append((name, significant(printed, 2), ours, significant(mine, 2)))
     return Table(("states", "printed in 1988", "25 networks", "your network"), rows)
@@ -234,13 +234,13 @@ def _exercise(number: int, *given) -> Exercise:
         )
     else:
         error_from, before = given
-        found = cache(lambda m: error_from(np.array(m)))
-        told = "near zero the torque is almost linear, and the samples lie where they count."
+        error_with = cache(lambda m: error_from(np.array(m)))
+        reason = "near zero the torque is almost linear, and the samples lie where they count."
         return Exercise(
             "numbers",
-            lambda m: 3 * found(m) < before,
-            told,
-            [(lambda m: found(m) > 0, "the error on the trajectory is not below a third.")],
+            lambda m: 3 * error_with(m) < before,
+            reason,
+            [(lambda m: error_with(m) > 0, "the error on the trajectory is not below a third.")],
             "Give three limits.",
             count=3,
             unless=[(lambda m: min(m) <= 0, "the limits must be above 0.")],
@@ -278,8 +278,8 @@ def velocity_ranges() -> Measured:
     """Share of hidden units with a transition region within the range of shoulder velocity."""
     along = transition_range(_networks().weights)
     within = {name: along[..., j, k] < 1 for name, j, k in (("v1", 0, 1), ("q2", 1, 0))}
-    found, elbow = (f"{100 * share.mean():.0f} %" for share in within.values())
-    return judged(mean, within["v1"], text=f"{found} of the units; of elbow position {elbow}")
+    velocity, elbow = (f"{100 * share.mean():.0f} %" for share in within.values())
+    return judged(mean, within["v1"], text=f"{velocity} of the units; of elbow position {elbow}")
 
 
 def best_of_sizes() -> Measured:
@@ -287,9 +287,9 @@ def best_of_sizes() -> Measured:
 
     There are three networks of each, too few to draw from: no replicates.
     """
-    found = results.read("state-space-sizes")
-    rows = {row["units"]: row["solver"]["test"] for row in found["units"] if row["solver"]}
+    study = results.read("state-space-sizes")
+    rows = {row["units"]: row["solver"]["test"] for row in study["units"] if row["solver"]}
     best = min(rows, key=lambda units: np.median(rows[units]))
-    samples = found["solver's samples in units"]
+    samples = study["solver's samples in units"]
     text = f"RMSS {spread(rows[best])} with {best} units, {samples:,} samples"
     return Measured(float(np.median(rows[best])), text)

@@ -52,12 +52,12 @@ ROUNDS = {
 """What the other network of each round learnt, and what is said to it after the guess."""
 
 
-def typical(found: Mapping) -> np.ndarray:
+def typical(row: Mapping) -> np.ndarray:
     """Numbers of the trial's networks, or draws, from the most typical one on.
 
     Typical: in its shares of the rule's names it is next to their medians over all of them.
     """
-    shares = np.stack([trial.share(found, "hidden", [name]) for name in CLASSES], -1)
+    shares = np.stack([trial.share(row, "hidden", [name]) for name in CLASSES], -1)
     away = np.abs(shares - np.median(shares, 0)).sum(-1)
     return np.argsort(away.round(9), kind="stable")
 
@@ -106,12 +106,12 @@ def typical_starts(count: int) -> Weights:
 
 def rounds() -> list[GuessRound]:
     """The rounds of the guess: the two networks of a round have the same start."""
-    count = len(ROUNDS)
-    begin = typical_starts(count)
-    kinds = ["own"] * count + list(ROUNDS)
+    number = len(ROUNDS)
+    begin = typical_starts(number)
+    kinds = ["own"] * number + list(ROUNDS)
     every = trained(kinds, Weights.concatenate([begin, begin])).hidden_weights
-    rows = every.reshape(2, count, -1, _WIDTH)
-    return [GuessRound(*pair, *told) for *pair, told in zip(*rows, ROUNDS.values())]
+    rows = every.reshape(2, number, -1, _WIDTH)
+    return [GuessRound(*pair, *names) for *pair, names in zip(*rows, ROUNDS.values())]
 
 
 def five_starts(seed: int = 0) -> dict[float, tuple[Weights, Weights]]:
@@ -146,11 +146,11 @@ def of_torques(panels: Mapping[str, Mapping[str, np.ndarray]], arm: float | None
             )
         axes[0].set_yticks(range(len(kinds)), [_TORQUES[kind] for kind in kinds])
 
-    told = "; ".join(
+    means = "; ".join(
         f"{label}: " + ", ".join(f"{_TORQUES[k]} {np.mean(x):.0f}" for k, x in shown.items())
         for label, shown in panels.items()
     )
-    alt = f"Means of networks, by the torques that they were trained on. {told}."
+    alt = f"Means of networks, by the torques that they were trained on. {means}."
     return illustrate(draw, alt, 7.0, 2.3, narrow_height=2.3 * len(panels))
 
 
@@ -160,7 +160,7 @@ def names_beside() -> Illustration:
     sets = {"real": row["real"], **trial.matched(row)}
     return of_torques({
         f"{name} filters, % of hidden ones": {
-            kind: 100 * trial.share(found, "hidden", [name]) for kind, found in sets.items()
+            kind: 100 * trial.share(cell, "hidden", [name]) for kind, cell in sets.items()
         }
         for name in ("acceleration", "velocity")
     })  # fmt: skip
@@ -185,8 +185,8 @@ def _named(name: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
 def _velocity_elsewhere() -> np.ndarray:
     """Share of velocity filters by controller and start: the arm's torques, and two unrelated."""
     places = [(r, s) for r in SETUPS for s in results.read("start-nulls")["ranges"]]
-    found = (start.shares_beside(*place, "velocity") for place in places)
-    return np.array([[each[k].mean() for k in ("real", "shifted", "phases")] for each in found])
+    shares = (start.shares_beside(*place, "velocity") for place in places)
+    return np.array([[each[k].mean() for k in ("real", "shifted", "phases")] for each in shares])
 
 
 def _quoted() -> None:
@@ -229,8 +229,8 @@ def _said() -> None:
     stated("whose-start-hides", more[0] > more[1])
     study = results.read("targets")
     unnamed = {
-        size: resampled(found["not analysable"], np.mean)
-        for size, found in zip(study["initial"], study["by initial"]["real torques"])
+        size: resampled(shares["not analysable"], np.mean)
+        for size, shares in zip(study["initial"], study["by initial"]["real torques"])
     }
     stated("whose-few-names", (unnamed[0.03] < 0.5) & (unnamed[0.3] > 0.5))
     turn = [start.turned().replicates > 0]
@@ -265,9 +265,9 @@ def _exercise(number: int, given, *others) -> Exercise:
     elif number == 4:
         X, real = others
         torque = real[..., 0].ravel() - real[..., 0].mean()
-        told = np.asarray(given) @ X.T
-        off = np.sqrt(((told - torque) ** 2).mean(1)) / torque.std()
-        along = told @ torque
+        answers = np.asarray(given) @ X.T
+        off = np.sqrt(((answers - torque) ** 2).mean(1)) / torque.std()
+        along = answers @ torque
         best, *rest = np.argsort(off)
 
         def why(k):

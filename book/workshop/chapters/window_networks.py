@@ -71,10 +71,10 @@ print(f"inertia in the network: {inertia:.1f} kg m²")"""
 
 def _errors() -> dict:
     """RMSS of the book's networks: ``{reading: {column: {window: errors}}}``."""
-    days, table = results.read("recordings")["setups"], results.read("table-4-1")["setups"]
+    days, cells = results.read("recordings")["setups"], results.read("table-4-1")["setups"]
 
     def of(name, what, w):
-        cell = days[name][str(w)] if name in days else table[name][str(w)]["errors"]
+        cell = days[name][str(w)] if name in days else cells[name][str(w)]["errors"]
         return np.ravel(cell[what])
 
     return {
@@ -109,10 +109,10 @@ def table_4_1(readings: Mapping[str, str] = _LESSON) -> Table:
     for what, w in _CELLS:
         row = [f"{_NAMES[what]}, window {w}", significant(_PRINTED[what][w], 2)]
         for ending in readings.values():
-            found = claims.measured(f"table-4-1-{what}-{w}{ending}")
-            ends = np.quantile(found.replicates, (0.025, 0.975))
-            middle, low, high = (significant(x, 2) for x in (found.value, *ends))
-            near = abs(np.log(found.value / _PRINTED[what][w])) <= np.log(_NEAR)
+            measured = claims.measured(f"table-4-1-{what}-{w}{ending}")
+            ends = np.quantile(measured.replicates, (0.025, 0.975))
+            middle, low, high = (significant(x, 2) for x in (measured.value, *ends))
+            near = abs(np.log(measured.value / _PRINTED[what][w])) <= np.log(_NEAR)
             row.append(f"{f'**{middle}**' if near else middle} ({low} to {high})")
         rows.append(row)
     return Table(("error", "printed in 1988", *readings), rows)
@@ -127,9 +127,9 @@ def figure_4_1() -> Illustration:
     time, panels = test.t[test.motion], {}
     for w in WINDOWS:
         inputs, torque = cases(test, w)
-        told = results.median_network(w, JOINT_DAMPING.name).torque(inputs)
-        printed, own = (significant(x, 2) for x in (_PRINTED["test"][w], rmss(told, torque)))
-        panels[f"window {w}: RMSS {printed} printed, {own} here"] = torque[:, 0], told[:, 0]
+        predicted = results.median_network(w, JOINT_DAMPING.name).torque(inputs)
+        printed, own = (significant(x, 2) for x in (_PRINTED["test"][w], rmss(predicted, torque)))
+        panels[f"window {w}: RMSS {printed} printed, {own} here"] = torque[:, 0], predicted[:, 0]
 
     def draw(figure: Figure):
         axes = figure.subplots(len(panels), 1, sharex=True, sharey=True)
@@ -157,7 +157,7 @@ def order_medians() -> dict[int, float]:
 
 def order_stated() -> bool:
     """Hardly damped: least at 21; by the controller: not; damped joints: 41, and undecided."""
-    share = {name: found.replicates.mean() for name, found in orders().items()}
+    share = {name: order.replicates.mean() for name, order in orders().items()}
     medians = order_medians()
     return bool(
         share["position feedback"] > 0.95
@@ -209,7 +209,7 @@ def _steepest(width: int, every: int = 50) -> tuple[np.ndarray, np.ndarray]:
     w = [torch.tensor(part).requires_grad_() for part in parts]
     axes = [torch.randn(part.shape, generator=rng, dtype=part.dtype) for part in w]
     last = [torch.zeros_like(part) for part in w]
-    rate, found, told = default_rate(width), [], []
+    rate, steepness, epochs = default_rate(width), [], []
     for epoch in range(1, 4001):
         h = torch.sigmoid(x @ w[0].T + w[1])
         error = (torch.sigmoid(h @ w[2].T + x @ w[3].T + w[4]) - y).square().sum() / (2 * len(x))
@@ -223,14 +223,14 @@ def _steepest(width: int, every: int = 50) -> tuple[np.ndarray, np.ndarray]:
             curvature = float(sum((t * a).sum() for t, a in zip(turned, axes)))
             axes = list(turned)
         if look:
-            found.append(rate * curvature)
-            told.append(epoch)
+            steepness.append(rate * curvature)
+            epochs.append(epoch)
         share = 0.5 if epoch <= 500 else 0.98
         with torch.no_grad():
             for part, step, slope in zip(w, last, slopes):
                 step.mul_(share).sub_(rate * slope)
                 part.add_(step)
-    return np.array(told), np.array(found)
+    return np.array(epochs), np.array(steepness)
 
 
 def unsteady() -> Illustration:
@@ -301,9 +301,9 @@ def _factors() -> dict:
 
 def _events(row: str) -> dict[str, np.ndarray]:
     """Epochs at which the page's networks come to its three events; infinite if never."""
-    found = results.read("page-training")["rows"][f"{row}, real"]
+    reached = results.read("page-training")["rows"][f"{row}, real"]
     keys = "error", "direct", "hidden"
-    return {key: np.nan_to_num(np.array(found[key], float), nan=np.inf) for key in keys}
+    return {key: np.nan_to_num(np.array(reached[key], float), nan=np.inf) for key in keys}
 
 
 def _named_shifted() -> np.ndarray:
@@ -340,7 +340,7 @@ def _said() -> None:
         for what in _KINDS
         for w in WINDOWS
     ]
-    drawn = np.abs(np.log([found.replicates / printed for found, printed in measured])).max(0)
+    drawn = np.abs(np.log([error.replicates / printed for error, printed in measured])).max(0)
     others = min(off[name].max() for name in SETUPS if name != JOINT_DAMPING.name)
     stated("window-only-damping", np.exp(drawn) < others)
     near = {name: bool((x <= _NEAR).all()) for name, x in off.items()}
@@ -363,7 +363,7 @@ def _said() -> None:
         (x, tau), (x6, tau6) = cases(training, w), cases(test, w)
         x, x6 = (np.column_stack([a.reshape(len(a), -1), np.ones(len(a))]) for a in (x, x6))
         left.append(rmss(x6 @ np.linalg.lstsq(x, tau, rcond=None)[0], tau6))
-    more = [found.replicates > each for (found, _), each in zip(measured[3:], left)]
+    more = [error.replicates > each for (error, _), each in zip(measured[3:], left)]
     stated("window-linear", np.all(more, 0))
 
 
@@ -433,12 +433,12 @@ def _exercise(number: int, *given) -> Exercise:
         )
     else:
         factor = given[0] / given[1]
-        told = f"the error is {factor:.0f} times as large, about as for a guess of the mean."
+        reason = f"the error is {factor:.0f} times as large, about as for a guess of the mean."
         word = "larger" if factor > 2 else "smaller" if factor < 0.5 else "alike"
         return Exercise(
             "word",
             word,
-            told,
+            reason,
             otherwise="along which of the two paths did this torque drive the arm?",
             options=("smaller", "alike", "larger"),
         )

@@ -33,11 +33,11 @@ def _medians(name: str) -> tuple[np.ndarray, np.ndarray]:
 @cache
 def least_squares_by_size() -> np.ndarray:
     """Training and test errors of least squares, state feedback, shape (10 windows, 2)."""
-    found, runs = [], (committed.training(), committed.recording()[5])
+    errors, runs = [], (committed.training(), committed.recording()[5])
     for width in _medians("test")[0]:
         (x, y), (new, answer) = (cases(run, width) for run in runs)
-        found.append(refitted(x.reshape(len(x), -1), y, new.reshape(len(new), -1), answer))
-    return np.array(found)
+        errors.append(refitted(x.reshape(len(x), -1), y, new.reshape(len(new), -1), answer))
+    return np.array(errors)
 
 
 def behind_least_squares() -> np.ndarray:
@@ -61,7 +61,7 @@ def least_error() -> Measured:
 def acceleration_by_window() -> CurveWidget:
     """The shoulder's acceleration by a parabola in a window, for three encoders."""
     sizes, encoders = np.arange(3, 62, 2), {10.5: "10.5 bits", 12.5: "12.5 bits", 16.0: "16 bits"}
-    found, errors, true = {}, {}, {}
+    estimates, errors, true = {}, {}, {}
     for bits in encoders:
         rounding = Quantisation(2 * np.pi / 2**bits)
         setup = replace(JOINT_DAMPING, effects=replace(JOINT_DAMPING.effects, encoder=(rounding,)))
@@ -69,14 +69,14 @@ def acceleration_by_window() -> CurveWidget:
         truth = true[bits] = np.gradient(run.qd_true, run.step, axis=0)[run.motion, 0]
         for w in map(int, sizes):
             windows = sliding_windows(run.q, w, run.motion)[:, 0]
-            found[bits, w] = windows @ savitzky_golay(w, 2, run.step, degree=2)
-        misses = [found[bits, w] - truth for w in map(int, sizes)]
+            estimates[bits, w] = windows @ savitzky_golay(w, 2, run.step, degree=2)
+        misses = [estimates[bits, w] - truth for w in map(int, sizes)]
         errors[bits] = np.sqrt(np.mean(np.square(misses), 1) / truth.var())
     time, most = run.t[run.motion], 2.0 * np.abs(truth).max()
 
     def told(width, bits):
         k = int(np.flatnonzero(sizes == width)[0])
-        estimate = np.clip(found[bits, width], -most, most)
+        estimate = np.clip(estimates[bits, width], -most, most)
         error = {"errors": errors[bits], "error": errors[bits][k], "at": float(width)}
         return {"estimate": estimate, "true": true[bits], **error}
 
@@ -110,14 +110,14 @@ def errors_by_size() -> Illustration:
     """Median errors over ten window sizes by state feedback, and what the paper prints."""
     (sizes, training), (_, test), (_, best) = map(_medians, ("training", "test", "best test"))
     printed = np.array(list(paper.TABLE_4_1))
-    told = np.array([(t.training, t.test) for t in paper.TABLE_4_1.values()])
+    in_paper = np.array([(t.training, t.test) for t in paper.TABLE_4_1.values()])
     lines = {
         "training": training,
         "test, after 20,000 epochs": test,
         "test, best on the way": best,
         "test, least squares": least_squares_by_size()[:, 1],
-        "printed, training": (printed, told[:, 0]),
-        "printed, test": (printed, told[:, 1]),
+        "printed, training": (printed, in_paper[:, 0]),
+        "printed, test": (printed, in_paper[:, 1]),
     }
     alt = "Six curves over window sizes on logarithmic axes. From the shortest window to the "
     alt += f"longest the training error goes from {training[0]:.2f} to {training[-1]:.2f}, the "
@@ -160,8 +160,8 @@ def _said() -> None:
     level = least_squares_by_size()[sizes >= 11, 1]
     stated("size-linear-level", bool(level.max() < 1.1 * level.min()))
     stated("size-order", order_stated())
-    table = results.read("table-4-1")["setups"]["state feedback"]
-    three = {w: np.median(table[str(w)]["errors"]["test"]) for w in WINDOWS}
+    cells = results.read("table-4-1")["setups"]["state feedback"]
+    three = {w: np.median(cells[str(w)]["errors"]["test"]) for w in WINDOWS}
     stated("size-order-state", min(three, key=three.get) == 41)
     stated("size-unfinished", bool(behind_least_squares().sum() >= 4))
 
@@ -176,14 +176,14 @@ def _exercise(number: int, floor=None) -> Exercise:
         ]
         return Exercise("number", 2**2.5, "times enter twice, the samples by their root.", slips)
     elif number == 2:
-        told = "odd powers of s do not touch the middle curvature of a symmetric window."
+        reason = "odd powers of s do not touch the middle curvature of a symmetric window."
         otherwise = "s runs from -h to h. Which sums over powers of s are zero?"
-        return Exercise("number", 1.0, told, otherwise=otherwise, tolerance=1e-3)
+        return Exercise("number", 1.0, reason, otherwise=otherwise, tolerance=1e-3)
     else:
-        told = "this one is fine enough, and half a bit less is not."
+        reason = "this one is fine enough, and half a bit less is not."
         otherwise = "either its floor is above 0.05, or half a bit less is enough."
         right = fitting(lambda b: floor(b) <= 0.05 < floor(b - 0.5), np.arange(1.5, 40, 0.25))
-        return Exercise("number", right, told, otherwise=otherwise, unit="bits")
+        return Exercise("number", right, reason, otherwise=otherwise, unit="bits")
 
 
 check = judging(_exercise)

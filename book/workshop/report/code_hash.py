@@ -57,16 +57,16 @@ def places() -> dict[str, tuple[str, str]]:
 
     They have no other use, so their names begin with an underscore, which results do without.
     """
-    found = {}
+    studies = {}
     for root, folder in _ROOTS.items():
         for path in sorted(folder.rglob("studies/**/*.py")):
             module = ".".join((root, *path.relative_to(folder).with_suffix("").parts))
             for name in _studies(path.read_text(encoding="utf-8")):
-                found[name.strip("_").replace("_", "-")] = module, name
-    return found
+                studies[name.strip("_").replace("_", "-")] = module, name
+    return studies
 
 
-def _run(result: str) -> dict:
+def run_study(result: str) -> dict:
     """Call the study that makes a result."""
     module, name = places()[result]
     return getattr(importlib.import_module(module), name)()
@@ -156,16 +156,16 @@ def _names(module: str, text: str) -> dict[str, list[ast.stmt] | tuple[str, str 
             names |= _imported(statement, module)
             continue
         if isinstance(statement, (ast.FunctionDef, ast.ClassDef)):
-            made = [statement.name]
+            names_made = [statement.name]
         elif _only_tells(statement):
             continue
         else:  # an assignment, or a call that changes what has been made before
             used = [n.id for n in ast.walk(statement) if isinstance(n, ast.Name)]
-            made = _stored(statement, _SCOPES)
-            if not made or hasattr(statement, "body"):
+            names_made = _stored(statement, _SCOPES)
+            if not names_made or hasattr(statement, "body"):
                 changed = [n for n in used if n in names and not _is_imported(names[n])]
-                made = list(dict.fromkeys([*made, *changed]))
-        for name in made:
+                names_made = list(dict.fromkeys([*names_made, *changed]))
+        for name in names_made:
             earlier = names.get(name)
             names[name] = [*(earlier if isinstance(earlier, list) else []), statement]
     return names

@@ -44,7 +44,7 @@ def both(of: Callable) -> list:
     return [of(models) for models in (networks, _untrained)]
 
 
-def _filters(width: int, layer: str, setup: str = STATE_FEEDBACK.name) -> list[np.ndarray]:
+def filters_of_layer(width: int, layer: str, setup: str = STATE_FEEDBACK.name) -> list[np.ndarray]:
     """Weights along the window of all units, shape ``(networks, filters, width)``; as in `both`."""
     every = both(lambda models: getattr(models(width, setup).weights, f"{layer}_weights"))
     return [weights.reshape(len(weights), -1, width) for weights in every]

@@ -23,7 +23,7 @@ EPOCHS = 12_000  # Passes through the training set "until it reached an asymptot
 # Assumed: the paper prints none of them. The book shows what other choices give.
 RATE, MOMENTUM, WARM_UP, INITIAL = 4.0, 0.99, 500, 0.5
 
-_DESCENT = {"rate": RATE, "momentum": MOMENTUM, "warm_up": WARM_UP, "epochs": EPOCHS}
+DESCENT = {"rate": RATE, "momentum": MOMENTUM, "warm_up": WARM_UP, "epochs": EPOCHS}
 
 
 def random_states(samples: int = SAMPLES, seed: int = 0, radius: float = RADIUS) -> np.ndarray:

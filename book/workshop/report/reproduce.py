@@ -22,24 +22,24 @@ from ddlib import figures
 from ddlib.analysis import purest, upright
 from ddlib.simulation import LOG_STEP
 from workshop.report import results
-from workshop.report.code_hash import _run, code_hash, places
+from workshop.report.code_hash import code_hash, places, run_study
 
 
 def _picture() -> None:
     """The README's picture: two filters found in the networks of window 21."""
     networks = results.networks(21).weights
-    found = {
+    filters = {
         f"{name} filter": upright(purest(networks.hidden_weights, name))
         for name in ("velocity", "acceleration")
     }
     target = results.FOLDER.parent / "_static" / "readme.svg"
-    figures.decomposed(found, LOG_STEP).save(target)
+    figures.decomposed(filters, LOG_STEP).save(target)
 
 
 def _make(name: str, code: str) -> None:
     """Run one study and write its result with the hash `code` of what made it."""
     started = time.process_time()
-    content = _run(name)
+    content = run_study(name)
     made_by = {"code": code, **results.stamp(time.process_time() - started)}
     results.write_json(results.FOLDER / f"{name}.json", {"made by": made_by, **content})
 

@@ -66,7 +66,7 @@ def record_two_harmonics(
     )
 
 
-def _record_quintic(setup: Setup = STATE_FEEDBACK, degrees: float = -40.0) -> Recording:
+def record_quintic(setup: Setup = STATE_FEEDBACK, degrees: float = -40.0) -> Recording:
     """Both joints out and back by polynomials of degree five, at rest at either end of each."""
     t = time_grid(CONTROL_STEP, REST)
     half = MOTION_SECONDS / 2
@@ -75,9 +75,7 @@ def _record_quintic(setup: Setup = STATE_FEEDBACK, degrees: float = -40.0) -> Re
     return _followed(setup, t, _along(np.stack([q, 0.6 * q], -1)))
 
 
-def _record_circle(
-    setup: Setup = STATE_FEEDBACK, radius: float = 0.03, turns: int = 2
-) -> Recording:
+def record_circle(setup: Setup = STATE_FEEDBACK, radius: float = 0.03, turns: int = 2) -> Recording:
     """The hand goes round a circle about where `NEUTRAL` puts it."""
     t = time_grid(CONTROL_STEP, REST)
     angle = 2 * np.pi * turns * np.clip(t, 0, MOTION_SECONDS) / MOTION_SECONDS

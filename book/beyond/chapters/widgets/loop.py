@@ -29,10 +29,10 @@ _NOTE = (
 @cache
 def _learned(load: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Committed errors (mm) and estimates of all learners, with and without friction."""
-    found = results.read("loop-learner")["loads"][str(load)]
+    by_learner = results.read("loop-learner")["loads"][str(load)]
     return {
         name: tuple(np.array(one[key], dtype=float) for key in ("errors", "estimates"))
-        for name, one in found.items()
+        for name, one in by_learner.items()
     }
 
 
@@ -40,9 +40,9 @@ class LoopLearner(CurveWidget):
     """Pick a load, friction, a learner and its rate; see the error fall, and the estimates."""
 
     def __init__(self, **options):
-        found = results.read("loop-learner")["loads"]
-        loads, learners = list(map(int, found)), list(found["0"])
-        number = len(found["0"]["none"]["errors"][0][0])
+        by_load = results.read("loop-learner")["loads"]
+        loads, learners = list(map(int, by_load)), list(by_load["0"])
+        number = len(by_load["0"]["none"]["errors"][0][0])
         motions = np.arange(1, number + 1)
         super().__init__(
             _curves,
@@ -89,10 +89,10 @@ def _truth(load: int) -> np.ndarray:
 
 
 def _curves(load, friction, learner, rate) -> dict:
-    found, k = _learned(load), list(SPEEDS).index(rate)
-    errors, estimates = found[learner]
+    learned, k = _learned(load), list(SPEEDS).index(rate)
+    errors, estimates = learned[learner]
     relative = estimates[int(friction), k] / _truth(load)
     curves = {name: np.clip(relative[:, place], *_BOUNDS) for name, place in _SHOWN.items()}
-    nobody = found["none"][0][int(friction), 0]
+    nobody = learned["none"][0][int(friction), 0]
     shown = np.minimum(errors[int(friction), k], _MOST_ERROR)
     return {"error": shown, "nobody": nobody, **curves}

@@ -27,9 +27,9 @@ def _stirring_descent(days: int = 10, members: int = 20) -> dict:
         "circles": motions.stirred(setup.arm, motions.random_circles(members, motions.TEST_DAY), t),
         "pick and place": pick_and_place(random_extents(members, motions.TEST_DAY), t),
     }
-    found: dict = {"training": left, "hands": {}}
+    result: dict = {"training": left, "hands": {}}
     for motion, reference in asked.items():
         torques = {"none": [0 * reference.q], "network": [box(*reference) for box in models]}
-        hands = stirring._hand_errors(setup.repeated(motions.TEST_DAY), torques, reference)
-        found["hands"][motion] = {name: np.median(off, -1) for name, off in hands.items()}
-    return found
+        hands = stirring.hand_errors(setup.repeated(motions.TEST_DAY), torques, reference)
+        result["hands"][motion] = {name: np.median(off, -1) for name, off in hands.items()}
+    return result

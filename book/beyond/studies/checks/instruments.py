@@ -26,19 +26,19 @@ _INSIDE = slice(40, -40)  # samples that count
 
 
 def _commanded(run: str) -> np.ndarray:
-    """Commanded torques (N m), ``(samples, 2)``, on the grid of `two_link._recording`."""
-    with np.load(BOOK / "data" / "double-pendulum.npz") as kept:
-        t, *columns = kept[run][:, [0, 5, 6]].astype(float).T
-    fine = t[0] + 1e-3 * np.arange(int((t[-1] - t[0]) / arm._STEP) * 10)
+    """Commanded torques (N m), ``(samples, 2)``, on the grid of `two_link.recorded_run`."""
+    with np.load(BOOK / "data" / "double-pendulum.npz") as by_run:
+        t, *columns = by_run[run][:, [0, 5, 6]].astype(float).T
+    fine = t[0] + 1e-3 * np.arange(int((t[-1] - t[0]) / arm.STEP) * 10)
     return np.stack([np.interp(fine, t, x).reshape(-1, 10).mean(1) for x in columns], -1)
 
 
 def _caused(parameters, states, torque) -> np.ndarray:
     """Accelerations (rad/s^2) that torques cause at states, by the equations."""
     still = states * [1, 1, 0]
-    rest = arm._regressor(still) @ parameters
+    rest = arm.regressor(still) @ parameters
     units = [still + np.array([[0, 0, 1], [0, 0, 0]]), still + np.array([[0, 0, 0], [0, 0, 1]])]
-    mass = np.stack([arm._regressor(x) @ parameters - rest for x in units], -1)
+    mass = np.stack([arm.regressor(x) @ parameters - rest for x in units], -1)
     return np.linalg.solve(mass, (torque - rest)[..., None])[..., 0]
 
 
@@ -47,39 +47,39 @@ def _joined(parts) -> np.ndarray:
 
 
 def _by_instruments(runs, width) -> np.ndarray:
-    recordings = [arm._recording(run) for run in runs]
-    rows = _joined([arm._regressor(arm._states(q, width)) for q, _ in recordings])
+    recordings = [arm.recorded_run(run) for run in runs]
+    rows = _joined([arm.regressor(arm.fitted_states(q, width)) for q, _ in recordings])
     torque = _joined([measured for _, measured in recordings])
     spread = torque.std(0)
     a, y = (rows / spread[:, None]).reshape(torque.size, -1), (torque / spread).ravel()
-    found = np.linalg.lstsq(a, y)[0]
-    smooth = [arm._states(q, _SMOOTH) for q, _ in recordings]
+    parameters = np.linalg.lstsq(a, y)[0]
+    smooth = [arm.fitted_states(q, _SMOOTH) for q, _ in recordings]
     for _ in range(_ROUNDS):
-        made = [
-            np.concatenate([s[..., :2], _caused(found, s, _commanded(run))[..., None]], -1)
+        simulated = [
+            np.concatenate([s[..., :2], _caused(parameters, s, _commanded(run))[..., None]], -1)
             for run, s in zip(runs, smooth)
         ]
-        z = _joined([arm._regressor(s) for s in made])
+        z = _joined([arm.regressor(s) for s in simulated])
         z = (z / spread[:, None]).reshape(torque.size, -1)
-        found = np.linalg.solve(z.T @ a, z.T @ y)
-    return found
+        parameters = np.linalg.solve(z.T @ a, z.T @ y)
+    return parameters
 
 
 def _by_states(runs, states_of, both) -> np.ndarray:
     """Least squares on a smoother's states; perhaps with both sides averaged over 210 ms."""
-    recordings = [arm._recording(run) for run in runs]
-    average = arm._smooth if both else np.asarray
-    rows = _joined([average(arm._regressor(states_of(q))) for q, _ in recordings])
-    return arm._solved(rows, _joined([average(torque) for _, torque in recordings]))
+    recordings = [arm.recorded_run(run) for run in runs]
+    average = arm.smoothed if both else np.asarray
+    rows = _joined([average(arm.regressor(states_of(q))) for q, _ in recordings])
+    return arm.parameters_of(rows, _joined([average(torque) for _, torque in recordings]))
 
 
 def _butterworth(runs, cutoff, both) -> np.ndarray:
-    return _by_states(runs, lambda q: butterworth_states(q, arm._STEP, cutoff), both)
+    return _by_states(runs, lambda q: butterworth_states(q, arm.STEP, cutoff), both)
 
 
 def _kalman(runs, both) -> np.ndarray:
     """With the noise that is likeliest."""
-    return _by_states(runs, lambda q: kalman_states(q, arm._STEP), both)
+    return _by_states(runs, lambda q: kalman_states(q, arm.STEP), both)
 
 
 def _sure(runs, way, *how) -> dict:
@@ -92,20 +92,20 @@ def _sure(runs, way, *how) -> dict:
 @study
 def _two_link_instruments() -> dict:
     """Parameters of each design by window, by cutoff, and by the likeliest smoother."""
-    tasks = {"instruments": (_by_instruments, [(w,) for w in arm._LENGTHS])}
-    for both, told in ((False, ""), (True, ", both sides")):
-        tasks["Butterworth" + told] = _butterworth, [(f, both) for f in _CUTOFFS]
-        tasks["Kalman" + told] = _kalman, [(both,)]
+    tasks = {"instruments": (_by_instruments, [(w,) for w in arm.LENGTHS])}
+    for both, suffix in ((False, ""), (True, ", both sides")):
+        tasks["Butterworth" + suffix] = _butterworth, [(f, both) for f in _CUTOFFS]
+        tasks["Kalman" + suffix] = _kalman, [(both,)]
     jobs = [
         (design, name, way, how)
-        for design in arm._RUNS
+        for design in arm.RUNS
         for name, (way, hows) in tasks.items()
         for how in hows
     ]
     with joblib.parallel_config("loky", n_jobs=-1, inner_max_num_threads=1):
-        run = joblib.delayed(lambda d, way, how: _sure(arm._RUNS[d], way, *how))
-        made = joblib.Parallel()(run(design, way, how) for design, _, way, how in jobs)
-    designs = {design: {name: [] for name in tasks} for design in arm._RUNS}
-    for (design, name, *_), found in zip(jobs, made):
-        designs[design][name].append(found)
-    return {"lengths": arm._LENGTHS, "cutoffs": _CUTOFFS, "designs": designs}
+        run = joblib.delayed(lambda d, way, how: _sure(arm.RUNS[d], way, *how))
+        estimates = joblib.Parallel()(run(design, way, how) for design, _, way, how in jobs)
+    designs = {design: {name: [] for name in tasks} for design in arm.RUNS}
+    for (design, name, *_), parameters in zip(jobs, estimates):
+        designs[design][name].append(parameters)
+    return {"lengths": arm.LENGTHS, "cutoffs": _CUTOFFS, "designs": designs}

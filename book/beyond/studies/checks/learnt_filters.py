@@ -17,8 +17,8 @@ import numpy as np
 from beyond.rivals.identified import Linear
 from beyond.rivals.protocol import Cases
 from beyond.studies.lineup import _DAYS
-from beyond.studies.rivals import _EVERY, _GRID, _SAMPLES, _square
-from beyond.studies.tx40 import _BLOCKS, Windowed, known_structure, wrong
+from beyond.studies.rivals import _EVERY, SQUARE_POINTS, WINDOW, square_recordings
+from beyond.studies.tx40 import BLOCKS, Windowed, known_structure, wrong
 from ddlib.analysis import frequency_response
 from ddlib.identification import (
     FRICTION,
@@ -32,9 +32,9 @@ from ddlib.setups import JOINT_DAMPING, split
 from ddlib.simulation import LOG_STEP, Recording
 from workshop.report.code_hash import study
 
-_NAMES = RIGID + FRICTION
+PARAMETER_NAMES = RIGID + FRICTION
 _FILTERS = ("position", "velocity", "acceleration")
-_WIDTHS = (_SAMPLES, 31)  # that of the rivals, and a wider one
+_WIDTHS = (WINDOW, 31)  # that of the rivals, and a wider one
 _REAL = ((100, 5), (100, 11), (100, 21))  # samples a second and window of the real arm
 _CARRIED = 1e-3  # pull on the real arm: what leaving out runs chose on the other arm's first day
 _HERTZ = np.linspace(0, 50, 101)
@@ -48,11 +48,11 @@ def _other_encoder(recording: Recording, day: int) -> Recording:
     return replace(recording, q=q)
 
 
-def _recorded(day: int) -> dict[str, tuple[Recording, int]]:
+def recorded_parts(day: int) -> dict[str, tuple[Recording, int]]:
     """As in the study of rivals: recordings, and every how many samples they are asked."""
     setup = JOINT_DAMPING.repeated(day)
     training, six = split(setup.record())
-    whole = _square(setup, _GRID)
+    whole = square_recordings(setup, SQUARE_POINTS)
     inside, outside = whole.recording[whole.inside], whole.recording[~whole.inside]
     return {"training": (training, 1), "trajectory 6": (six, 1), "inside": (inside, _EVERY),
             "outside": (outside, _EVERY)}  # fmt: skip
@@ -67,37 +67,37 @@ def _errors(predict, parts, width) -> dict[str, float]:
 def _fitted(parts, width, pull=None, learn=_FILTERS) -> tuple[FilteredEquations, dict]:
     """The equations with learnt filters, and their errors."""
     training = parts["training"][0]
-    made = FilteredEquations(_NAMES, width, training.step, pull, learn).fit(training)
-    return made, _errors(made.predict, parts, width)
+    equations = FilteredEquations(PARAMETER_NAMES, width, training.step, pull, learn).fit(training)
+    return equations, _errors(equations.predict, parts, width)
 
 
 def _day(day: int) -> dict:
     """All of one day of the simulated arm."""
-    parts, found = _recorded(day), {"errors": {}, "found": {}}
+    parts, result = recorded_parts(day), {"errors": {}, "found": {}}
     for width in _WIDTHS:
-        made, found["errors"][str(width)] = _fitted(parts, width)
-        fixed, found["errors"][f"{width}, none learnt"] = _fitted(parts, width, 1.0, ())
-        true = true_parameters(JOINT_DAMPING.arm, JOINT_DAMPING.effects, _NAMES)
-        found["found"][str(width)] = {
-            "pull": made.pull,
-            "filters": made.filters,
-            "errors of filters": made.filter_errors,
-            "parameters": made.estimate.values,
+        equations, result["errors"][str(width)] = _fitted(parts, width)
+        fixed, result["errors"][f"{width}, none learnt"] = _fitted(parts, width, 1.0, ())
+        true = true_parameters(JOINT_DAMPING.arm, JOINT_DAMPING.effects, PARAMETER_NAMES)
+        result["found"][str(width)] = {
+            "pull": equations.pull,
+            "filters": equations.filters,
+            "errors of filters": equations.filter_errors,
+            "parameters": equations.estimate.values,
             "fixed": fixed.estimate.values,
-            "covered": replace(made.estimate, unsure=None).covers(true),
+            "covered": replace(equations.estimate, unsure=None).covers(true),
         }
-        if width == _SAMPLES:
-            for count in (1, 2):
-                for learn in combinations(_FILTERS, count):
+        if width == WINDOW:
+            for number in (1, 2):
+                for learn in combinations(_FILTERS, number):
                     name = " and ".join(learn)
-                    found["errors"][name] = _fitted(parts, width, made.pull, learn)[1]
+                    result["errors"][name] = _fitted(parts, width, equations.pull, learn)[1]
     others = {name: (_other_encoder(r, day), every) for name, (r, every) in parts.items()}
-    made, found["errors"]["other encoder"] = _fitted(others, _SAMPLES)
-    found["found"]["other encoder"] = {"filters": made.filters}
-    found["errors"]["other encoder, none learnt"] = _fitted(others, _SAMPLES, 1.0, ())[1]
-    linear = Linear().fit(Cases.windows(others["training"][0], _SAMPLES))
-    found["errors"]["other encoder, linear filter"] = _errors(linear._torque, others, _SAMPLES)
-    return found
+    equations, result["errors"]["other encoder"] = _fitted(others, WINDOW)
+    result["found"]["other encoder"] = {"filters": equations.filters}
+    result["errors"]["other encoder, none learnt"] = _fitted(others, WINDOW, 1.0, ())[1]
+    linear = Linear().fit(Cases.windows(others["training"][0], WINDOW))
+    result["errors"]["other encoder, linear filter"] = _errors(linear._torque, others, WINDOW)
+    return result
 
 
 def _read(filters, step: float) -> dict:
@@ -119,21 +119,21 @@ def _real(rate: int, width: int, block: int) -> dict:
     data = Windowed.of(rate, width)
     training, test = data.fold(block)
     x, current, states = data.x, data.current, data.states
-    made = FilteredEquations(joint_terms, width, data.step, _CARRIED)
-    made.fit([x[training]], [current[training]])
+    equations = FilteredEquations(joint_terms, width, data.step, _CARRIED)
+    equations.fit([x[training]], [current[training]])
     known = known_structure(states[training], current[training], states[test])
     return {
         "equations": wrong(known, data, test).mean(),
-        "learnt": wrong(made.predict(x[test]), data, test).mean(),
-        "training": wrong(made.predict(x[training]), data, training).mean(),
-        "filters": made.filters,
+        "learnt": wrong(equations.predict(x[test]), data, test).mean(),
+        "training": wrong(equations.predict(x[training]), data, training).mean(),
+        "filters": equations.filters,
     }
 
 
 @study
 def _learnt_filters() -> dict:
     """Errors by day, which filters matter, what they are; the real arm's errors by block."""
-    jobs = [(*where, block) for where in _REAL for block in range(_BLOCKS)]
+    jobs = [(*where, block) for where in _REAL for block in range(BLOCKS)]
     with joblib.parallel_config("loky", n_jobs=-1, inner_max_num_threads=1):
         days = joblib.Parallel()(joblib.delayed(_day)(day) for day in range(1, _DAYS + 1))
         blocks = joblib.Parallel()(joblib.delayed(_real)(*job) for job in jobs)
@@ -141,16 +141,16 @@ def _learnt_filters() -> dict:
         name: {part: [day["errors"][name][part] for day in days] for part in row}
         for name, row in days[0]["errors"].items()
     }
-    found = {}
+    readings = {}
     for name, row in days[0]["found"].items():
         each = {key: np.array([day["found"][name][key] for day in days]) for key in row}
         width = each["filters"].shape[-1]
-        first = FilteredEquations(_NAMES, width, LOG_STEP).first
+        first = FilteredEquations(PARAMETER_NAMES, width, LOG_STEP).first
         each["spread of filters"] = each["filters"].std(0)
         each["filters"] = each["filters"].mean(0)
         if "errors of filters" in each:
             each["errors of filters"] = np.median(each["errors of filters"], 0)
-        found[name] = each | {
+        readings[name] = each | {
             "read": _read(each["filters"], LOG_STEP),
             "first": _read(first, LOG_STEP),
         }
@@ -163,12 +163,12 @@ def _learnt_filters() -> dict:
         row["filters"] = np.mean(row["filters"], 0)
     return {
         "days": _DAYS,
-        "names": _NAMES,
-        "true": true_parameters(JOINT_DAMPING.arm, JOINT_DAMPING.effects, _NAMES),
-        "numbers": {str(w): 3 * w + len(_NAMES) for w in _WIDTHS},
+        "names": PARAMETER_NAMES,
+        "true": true_parameters(JOINT_DAMPING.arm, JOINT_DAMPING.effects, PARAMETER_NAMES),
+        "numbers": {str(w): 3 * w + len(PARAMETER_NAMES) for w in _WIDTHS},
         "hertz": _HERTZ,
         "errors": errors,
-        "found": found,
+        "found": readings,
         "carried": _CARRIED,
         "real": real,
     }

@@ -10,7 +10,7 @@ from workshop.report.code_hash import study
 
 _WIDTHS, _MARGIN, _SEEDS = (41, 61, 81), 40, 3  # the same cases for each window
 _EPOCHS, _DESCENTS = (4000, 12000, 24000), 4
-_FAST, _SHAKEN = arm._STEP / 2, (12, 40)  # s, Hz
+_FAST, _SHAKEN = arm.STEP / 2, (12, 40)  # s, Hz
 _TURNS = np.arange(6.0, 18.5, 0.5)  # cycles of an error in one turn of the elbow
 
 
@@ -19,44 +19,44 @@ def _band(x, band) -> np.ndarray:
 
 
 def _solved(runs, width) -> np.ndarray:
-    records = [arm._recording(run) for run in runs]
+    records = [arm.recorded_run(run) for run in runs]
     cases = [np.arange(_MARGIN, len(q) - _MARGIN, arm._EVERY) for q, _ in records]
-    x = np.concatenate([arm._windows(q, width, at) for (q, _), at in zip(records, cases)])
+    x = np.concatenate([arm.centred_windows(q, width, at) for (q, _), at in zip(records, cases)])
     torque = np.concatenate([measured[at] for (_, measured), at in zip(records, cases)])
-    found = arm._optimal(x, torque, _SEEDS, arm._DECAYS[0], arm._STEPS)
-    return gains(mean_gradient(found, x), arm._STEP)
+    networks = arm.optimal_networks(x, torque, _SEEDS, arm._DECAYS[0], arm._STEPS)
+    return gains(mean_gradient(networks, x), arm.STEP)
 
 
 def _descended(runs, width=41) -> list[np.ndarray]:
-    x, start = arm._all(runs, width), Weights.random(_DESCENTS, width, 10, initial=arm.START)
-    data = TrainingSet.from_arrays(x, arm._all(runs, "torque"), scaling=(-1, 1))
+    x, start = arm.all_runs(runs, width), Weights.random(_DESCENTS, width, 10, initial=arm.START)
+    data = TrainingSet.from_arrays(x, arm.all_runs(runs, "torque"), scaling=(-1, 1))
     how = {"rate": 66 / width, "momentum": 0.98, "warm_up": 500, "epochs": _EPOCHS[-1]}
-    *_, kept = train_ensemble(start, data, snapshots=_EPOCHS, progress=False, **how)
-    models = [TorqueModel(kept[e], data.inputs, data.outputs, arm._STEP) for e in _EPOCHS]
-    return [gains(mean_gradient(model, x), arm._STEP) for model in models]
+    *_, weights = train_ensemble(start, data, snapshots=_EPOCHS, progress=False, **how)
+    models = [TorqueModel(weights[e], data.inputs, data.outputs, arm.STEP) for e in _EPOCHS]
+    return [gains(mean_gradient(model, x), arm.STEP) for model in models]
 
 
 def _shaken(run) -> dict:
     """Torque that a rigid arm needs for fast motion, and has, N m; elbow's error by its angle."""
-    (q, torque), inside = arm._recording(run, _FAST), slice(arm._MARGIN, -arm._MARGIN)
-    inertias = np.array(list(arm._PUBLISHED[run[:2]].values())) * np.isin(range(12), (0, 1, 2, 5))
-    fast = [_band(arm._states(q, 5, _FAST)[..., 2], band) for band in arm._BANDS]
-    needed = [arm._regressor(np.stack([q, 0 * q, a], -1)) @ inertias for a in fast]
+    (q, torque), inside = arm.recorded_run(run, _FAST), slice(arm._MARGIN, -arm._MARGIN)
+    inertias = np.array(list(arm.PUBLISHED[run[:2]].values())) * np.isin(range(12), (0, 1, 2, 5))
+    fast = [_band(arm.fitted_states(q, 5, _FAST)[..., 2], band) for band in arm.BANDS]
+    needed = [arm.regressor(np.stack([q, 0 * q, a], -1)) @ inertias for a in fast]
     error, angle = _band(q[:, 1], _SHAKEN)[inside], q[:, 1:]
     waves = [np.hstack([np.cos(k * angle), np.sin(k * angle)]) for k in _TURNS]
     seen = [_band(wave, _SHAKEN)[inside] for wave in waves]
     fits = [(wave, np.linalg.lstsq(wave, error)[0]) for wave in seen]
     left = [((error - wave @ factors) ** 2).sum() for wave, factors in fits]
-    has = [_band(torque, band)[inside].std(0) for band in arm._BANDS]
-    found = {"needed": [x[inside].std(0) for x in needed], "has": has}
-    found["amplitude"] = [np.hypot(*factors) for _, factors in fits]  # rad
-    return found | {"share": 1 - np.array(left) / (error**2).sum()}
+    has = [_band(torque, band)[inside].std(0) for band in arm.BANDS]
+    result = {"needed": [x[inside].std(0) for x in needed], "has": has}
+    result["amplitude"] = [np.hypot(*factors) for _, factors in fits]  # rad
+    return result | {"share": 1 - np.array(left) / (error**2).sum()}
 
 
 @study
 def _two_link_longer() -> dict:
     """Moments after longer windows and descent, and fast motion."""
-    solved = {d: {str(w): _solved(r, w) for w in _WIDTHS} for d, r in arm._RUNS.items()}
+    solved = {d: {str(w): _solved(r, w) for w in _WIDTHS} for d, r in arm.RUNS.items()}
     row = {"epochs": _EPOCHS, "turns": _TURNS, "solved": solved}
-    row["descended"] = {design: _descended(runs) for design, runs in arm._RUNS.items()}
-    return row | {"shaken": {r: _shaken(r) for runs in arm._RUNS.values() for r in runs}}
+    row["descended"] = {design: _descended(runs) for design, runs in arm.RUNS.items()}
+    return row | {"shaken": {r: _shaken(r) for runs in arm.RUNS.values() for r in runs}}

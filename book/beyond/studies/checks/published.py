@@ -4,8 +4,8 @@ import numpy as np
 import torch
 from torch import nn
 
-from beyond.others import _FOLDER
-from beyond.studies.characters import _SEEDS, _SPLITS, _tested, data, states
+from beyond.others import DATA
+from beyond.studies.characters import SEEDS, SPLITS, data, states, tested
 from workshop.report.code_hash import study
 
 _TEN = 10  # published networks, by their seeds
@@ -15,7 +15,7 @@ _HIDDEN, _STEPS = 32, 2000  # tanh units of both layers of a plain network; iter
 
 def _published(seed: int) -> dict[str, np.ndarray]:
     """Weights of a published network."""
-    with np.load(_FOLDER / "delan-published.npz") as file:
+    with np.load(DATA / "delan-published.npz") as file:
         return {name: values[seed].astype(float) for name, values in file.items()}
 
 
@@ -37,12 +37,12 @@ def _lagrangian(weights: dict, x) -> np.ndarray:
     """Torques at states ``(cases, 2, 3)``, the first angle from the horizontal."""
     q, speed, pushed = np.moveaxis(x, -1, 0)
     out, slope = _layers(weights, "mass_matrix", q)
-    lower, moved = np.zeros((len(q), 2, 2)), np.zeros((len(q), 2, 2, 2))
+    lower, lower_slopes = np.zeros((len(q), 2, 2)), np.zeros((len(q), 2, 2, 2))
     for j in range(2):
         lower[:, j, j] = np.logaddexp(0, out[:, j] + _SHIFT) + _FLOOR
-        moved[..., j, j] = slope[..., j] / (1 + np.exp(-out[:, j, None] - _SHIFT))
-    lower[:, 1, 0], moved[..., 1, 0] = out[:, 2], slope[..., 2]
-    half = moved @ lower.mT[:, None]
+        lower_slopes[..., j, j] = slope[..., j] / (1 + np.exp(-out[:, j, None] - _SHIFT))
+    lower[:, 1, 0], lower_slopes[..., 1, 0] = out[:, 2], slope[..., 2]
+    half = lower_slopes @ lower.mT[:, None]
     along = ((half + half.mT) @ speed[:, None, :, None])[..., 0]  # (cases, angle, joint)
     torque = (lower @ lower.mT @ pushed[..., None])[..., 0] + (along * speed[..., None]).sum(1)
     gravity = _layers(weights, "potential_energy", q)[1][..., 0]
@@ -89,14 +89,14 @@ def _characters_published() -> dict:
     _, test = data().split()
     turned = states(test).x[0] - states(test, 0.0).x[0]
     ten = [_published(seed) for seed in range(_TEN)]
-    lagrangian = [_tested(lambda x, w=w: _lagrangian(w, x - turned), test) for w in ten]
-    count = sum(values.size for values in ten[0].values())
-    found: dict = {"published": {"count": count, "loader": lagrangian}, "plain": {}}
-    for split, labels in _SPLITS.items():
+    lagrangian = [tested(lambda x, w=w: _lagrangian(w, x - turned), test) for w in ten]
+    stored = sum(values.size for values in ten[0].values())
+    result: dict = {"published": {"count": stored, "loader": lagrangian}, "plain": {}}
+    for split, labels in SPLITS.items():
         training, test = data().split(labels)
-        made = [_plain(states(training), seed) for seed in range(_SEEDS)]
-        found["plain"] |= {
-            split: [_tested(torque, test) for torque, _ in made],
-            "count": made[0][1],
+        networks = [_plain(states(training), seed) for seed in range(SEEDS)]
+        result["plain"] |= {
+            split: [tested(torque, test) for torque, _ in networks],
+            "count": networks[0][1],
         }
-    return found
+    return result

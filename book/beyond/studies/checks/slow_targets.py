@@ -14,10 +14,10 @@ from beyond.studies.walking import (
     _MEMBERS,
     _SIZES,
     STEP,
-    _trained,
     gradient,
     layers,
     torque,
+    trained_copy,
 )
 from workshop.report.code_hash import study
 
@@ -29,17 +29,17 @@ def _slowly_told(cases: int, seed: int) -> np.ndarray:
     rng, t = np.random.default_rng(seed), -STEP * np.arange(3)
     error, velocity = np.zeros((2, cases, 3))
     for _ in range(3):
-        moved, wanted = rng.uniform(*_SIZES, (2, cases, 1))
+        swings, wanted = rng.uniform(*_SIZES, (2, cases, 1))
         w, slow = (2 * np.pi * rng.uniform(*f, (cases, 1)) for f in (_FREQUENCIES, _SLOW))
         first, second = rng.uniform(0, 2 * np.pi, (2, cases, 1))
-        error += moved * np.sin(w * t + first) - wanted * np.sin(slow * t + second)
-        velocity += moved * w * np.cos(w * t + first)
+        error += swings * np.sin(w * t + first) - wanted * np.sin(slow * t + second)
+        velocity += swings * w * np.cos(w * t + first)
     return np.concatenate([error, velocity], axis=1)
 
 
 def _copy(seed: int) -> dict:
     x = _slowly_told(_CASES, 0)
-    copy, error = _trained(x, torque(x, layers()), seed, longer=True)
+    copy, error = trained_copy(x, torque(x, layers()), seed, longer=True)
     return {"error": error, "gradient": gradient(x, copy).mean(0)}
 
 

@@ -26,8 +26,8 @@ from typing import NamedTuple
 import joblib
 import numpy as np
 
-from beyond.studies.rivals import _EVERY, _GRID, _square
-from beyond.studies.tuned import _BOOKS_OWN, _DAYS, _FEWER, _RIVALS, _RUNS
+from beyond.studies.rivals import _EVERY, SQUARE_POINTS, square_recordings
+from beyond.studies.tuned import _DAYS, _FEWER, _RUNS, OWN_RIVAL, RIVALS
 from ddlib.effects import Delay, Quantisation
 from ddlib.identification import (
     FRICTION,
@@ -45,10 +45,10 @@ from ddlib.setups import JOINT_DAMPING, Setup, split
 from ddlib.simulation import LOG_STEP, Recording
 from workshop.report.code_hash import study
 
-_LATE = 2  # samples by which a torque sensor is late
+_SENSOR_LATE = 2  # samples by which a torque sensor is late
 _WEIGHT = (98.9, 12.4)  # N m: gravity moments of the arm's assumed links, at 9.81 m/s^2
 _ROUNDING = JOINT_DAMPING.effects.encoder[0].step / np.sqrt(12)  # its deviation, rad
-_LEARNT = _BOOKS_OWN  # as in `tuned`
+_LEARNT = OWN_RIVAL  # as in `tuned`
 
 
 class _Kept(NamedTuple):
@@ -79,8 +79,8 @@ def _smoothed(states_of, names, recording: Recording, delay: int = 0) -> _Kept:
 
 
 def _learnt(width, pull, names, recording: Recording) -> _Kept:
-    made = FilteredEquations(names, width, LOG_STEP, pull).fit(recording)
-    return _Kept(made.predict, made.estimate.values)
+    equations = FilteredEquations(names, width, LOG_STEP, pull).fit(recording)
+    return _Kept(equations.predict, equations.estimate.values)
 
 
 def _butterworth(cutoff, delay=0):
@@ -99,8 +99,8 @@ _WAYS: dict[str, dict[tuple, Callable]] = {
     "Kalman smoother": {(n,): _kalman(n) for n in _NOISES},
     _LEARNT: {
         (w, pull): partial(_learnt, w, pull)
-        for w in _RIVALS[_LEARNT].windows
-        for pull in _RIVALS[_LEARNT].knobs["pull"]
+        for w in RIVALS[_LEARNT].windows
+        for pull in RIVALS[_LEARNT].knobs["pull"]
     },
 }
 _MORE: dict[str, dict[str, dict[tuple, Callable]]] = {
@@ -120,7 +120,7 @@ def _coarse(setup: Setup) -> Setup:
 
 
 def _sensor(setup: Setup) -> Setup:
-    sensor = (Delay(_LATE), *setup.effects.torque_sensor)
+    sensor = (Delay(_SENSOR_LATE), *setup.effects.torque_sensor)
     return replace(setup, effects=replace(setup.effects, torque_sensor=sensor))
 
 
@@ -147,8 +147,8 @@ def _left_out(way, names, training: Recording) -> float:
     """As `tuned` judges a setting."""
     each = []
     for out in range(_RUNS):
-        kept = way(names, training[[k for k in range(_RUNS) if k != out]])
-        each.append(_wrong(kept, training[out]))
+        fitted = way(names, training[[k for k in range(_RUNS) if k != out]])
+        each.append(_wrong(fitted, training[out]))
     return float(np.sqrt(np.mean(np.square(each))))
 
 
@@ -157,7 +157,7 @@ def _job(arm: str, day: int) -> dict:
     setup, names, _ = _ARMS[arm]
     setup = setup.repeated(day)
     training, six = split(setup.record())
-    whole, found = _square(setup, _GRID), {}
+    whole, result = square_recordings(setup, SQUARE_POINTS), {}
     parts = {"training": (training, 1), "trajectory 6": (six, 1)}
     for name, chosen in (("inside", whole.inside), ("outside", ~whole.inside)):
         parts[name] = (whole.recording[chosen], _EVERY)
@@ -165,14 +165,14 @@ def _job(arm: str, day: int) -> dict:
     for name, settings in (_WAYS | _MORE.get(arm, {})).items():
         lost = {s: _left_out(way, names, training) for s, way in settings.items()}
         best = min(lost, key=lost.get)
-        kept = settings[best](names, training)
-        found[name] = {
+        fitted = settings[best](names, training)
+        result[name] = {
             "setting": best,
-            "errors": {part: _wrong(kept, *at) for part, at in parts.items()},
-            "applied": {part: _wrong(kept, *at, logged=False) for part, at in parts.items()},
-            "off": kept.values / true - 1,
+            "errors": {part: _wrong(fitted, *at) for part, at in parts.items()},
+            "applied": {part: _wrong(fitted, *at, logged=False) for part, at in parts.items()},
+            "off": fitted.values / true - 1,
         }
-    return found
+    return result
 
 
 @study
@@ -180,10 +180,10 @@ def _smoothers() -> dict:
     """Settings, errors and parameters of each way, by arm and day."""
     jobs = [(arm, day) for arm, (*_, days) in _ARMS.items() for day in range(1, days + 1)]
     with joblib.parallel_config("loky", n_jobs=-1, inner_max_num_threads=1):
-        made = dict(zip(jobs, joblib.Parallel()(joblib.delayed(_job)(*job) for job in jobs)))
+        results = dict(zip(jobs, joblib.Parallel()(joblib.delayed(_job)(*job) for job in jobs)))
     arms = {}
     for arm, (_, names, days) in _ARMS.items():
-        each = [made[arm, day] for day in range(1, days + 1)]
+        each = [results[arm, day] for day in range(1, days + 1)]
         arms[arm] = {"names": names, "ways": {}}
         for way in each[0]:
             rows = [day[way] for day in each]

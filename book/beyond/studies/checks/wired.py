@@ -19,7 +19,7 @@ def _network(x, y, training, decay: float, seed: int) -> np.ndarray:
     """Currents at all cases by a network with two hidden units for each joint that it sees."""
     joints, width = x.shape[1:]
     start = Weights.random(1, width, 2 * joints, joints, joints, seed=seed)[0]
-    return tx40._decayed(x[training], y[training], start, decay).torque(x)
+    return tx40.decayed_network(x[training], y[training], start, decay).torque(x)
 
 
 def _linear(x, y, training, penalty: float, seed: int) -> np.ndarray:
@@ -34,8 +34,8 @@ def _apart(model: Callable, x, y, *options) -> np.ndarray:
 _MODELS = {
     "network": (_network, _DECAYS),
     "network, by joint": (partial(_apart, _network), _DECAYS),
-    "linear filter": (_linear, tx40._RIDGES[::2]),
-    "linear filter, by joint": (partial(_apart, _linear), tx40._RIDGES[::2]),
+    "linear filter": (_linear, tx40.RIDGES[::2]),
+    "linear filter, by joint": (partial(_apart, _linear), tx40.RIDGES[::2]),
     "equations": (None, (0.0,)),
 }
 
@@ -46,18 +46,18 @@ def _tried(name: str, width: int, penalty: float, out: tuple, seed: int = 0) -> 
     training = np.all([data.fold(block)[0] for block in out], axis=0)
     if model is None:
         states = data.states
-        found = tx40.known_structure(states[training], data.current[training], states)
+        predicted = tx40.known_structure(states[training], data.current[training], states)
     else:
-        found = model(data.x, data.current, training, penalty, seed)
+        predicted = model(data.x, data.current, training, penalty, seed)
     tests = (data.fold(block)[1] for block in out)
-    return [float(tx40.wrong(found[test], data, test).mean()) for test in tests]
+    return [float(tx40.wrong(predicted[test], data, test).mean()) for test in tests]
 
 
 def _chosen(name: str) -> dict:
     """Errors ``(blocks, seeds)``; window and penalty chosen by leaving out another block, too."""
     options = list(product(_WIDTHS, _MODELS[name][1]))
-    left = np.zeros((len(options), tx40._BLOCKS))
-    for (k, option), (a, b) in product(enumerate(options), combinations(range(tx40._BLOCKS), 2)):
+    left = np.zeros((len(options), tx40.BLOCKS))
+    for (k, option), (a, b) in product(enumerate(options), combinations(range(tx40.BLOCKS), 2)):
         left[k, [b, a]] += _tried(name, *option, (a, b))  # what is learnt without b, tried on a
     best = [options[k] for k in left.argmin(0)]
     seeds = range(_SEEDS if "network" in name else 1)

@@ -1,1 +1,5 @@
-"""Studies of *Closing the loop*; in `runs` many controllers run in one batch."""
+"""Studies of *Closing the loop*.
+
+Two modules make what several of them run: ``feedforwards`` the torques given in advance, and
+``adaptive_laws`` the controllers that learn, many of them in one batch.
+"""

@@ -8,9 +8,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from beyond.control.adaptive import SlotineLi
-from beyond.studies.loop.run_time_parts import rounded
-from beyond.studies.loop.runs import adaptive as batch
-from beyond.studies.loop.runs.adaptive import _LAWS
+from beyond.studies.loop import adaptive_laws as batch
+from beyond.studies.loop.adaptive_laws import LAWS
+from beyond.studies.loop.feedforwards import rounded
 from ddlib.dynamics import CMU_DD_ARM_II, with_load
 from ddlib.effects import IDEAL, Backlash, DeadZone, Delay, Effects, Ripple, StribeckFriction
 from ddlib.setups import (
@@ -39,7 +39,7 @@ _BITS = (10.0, 11.0, 12.5, 14.0, 16.0, 20.0)  # encoders, bits a turn
 _BEGIN = 0.5  # share of the base parameters that is known at the start
 _MOST = tuple(JOINT_DAMPING_COULOMB)  # N m, of the unmodelled effects
 _PLAY = (3.5e-3, 3.5e-3)  # rad: backlash of 0.2 degrees
-_CORNERS = (0.0, 0.1, 0.2)  # s over which a plan's corners are averaged, as in `_run_time`
+_CORNERS = (0.0, 0.1, 0.2)  # s over which a plan's corners are averaged, as in `run_time`
 
 # What is added to the set-up's effects.
 _BED = {
@@ -62,29 +62,31 @@ def _course(setup: Setup, seed: int = 1) -> dict:
     """Errors and estimates from trial to trial, before and after a load is taken up."""
     start = np.broadcast_to(_BEGIN * batch.TRUTH, (_SEEDS, 3))
     laws = {
-        **batch._fixed(setup),
-        **{law: batch.make(law, setup, start) for law in _LAWS},
+        **batch.fixed_laws(setup),
+        **{law: batch.make(law, setup, start) for law in LAWS},
         "with friction, jumps": batch.make("with friction", setup, start, jumps=True),
     }
-    extents = batch._drawn(_SEEDS, 2 * TRIALS, seed)
-    found = _taken_up(setup, laws, extents[:TRIALS], extents[TRIALS:], seed)
-    known = [n for n in laws if n.startswith(_LAWS)]
+    extents = batch.drawn_extents(_SEEDS, 2 * TRIALS, seed)
+    trials = _taken_up(setup, laws, extents[:TRIALS], extents[TRIALS:], seed)
+    known = [n for n in laws if n.startswith(LAWS)]
     return {
-        "settled": batch._by_law(found, laws),
-        "hand": batch._by_law(found, laws, "hand"),
-        "stopped": int(sum(t.stops.stopped.sum() for t in found)),
+        "settled": batch.errors_by_law(trials, laws),
+        "hand": batch.errors_by_law(trials, laws, "hand"),
+        "stopped": int(sum(t.stops.stopped.sum() for t in trials)),
         "estimates": {
-            n: np.stack([np.median(t.laws[n].estimate, 0) for t in found]) for n in known
+            n: np.stack([np.median(t.laws[n].estimate, 0) for t in trials]) for n in known
         },
-        "unloaded": {n: found[TRIALS - 1].laws[n].estimate for n in known},
+        "unloaded": {n: trials[TRIALS - 1].laws[n].estimate for n in known},
     }
 
 
 def _taken_up(setup: Setup, laws, before, after, seed: int, **options) -> list:
     """Motions before and after a load is taken up."""
-    effects = batch._rounding(setup, _SEEDS, seed)
-    found, laws = batch._trials(laws, before, setup.arm, effects, **options)
-    return found + batch._trials(laws, after, with_load(setup.arm, _PICKED), effects, **options)[0]
+    effects = batch.with_rounding(setup, _SEEDS, seed)
+    trials, laws = batch.run_trials(laws, before, setup.arm, effects, **options)
+    return (
+        trials + batch.run_trials(laws, after, with_load(setup.arm, _PICKED), effects, **options)[0]
+    )
 
 
 def _again(setup: Setup, seconds: float, seed: int = 1) -> dict:
@@ -98,28 +100,31 @@ def _again(setup: Setup, seconds: float, seed: int = 1) -> dict:
         return Trajectory(*(x[..., first : first + len(t), :] for x in rounded(extents, seconds)))
 
     start = np.broadcast_to(_BEGIN * batch.TRUTH, (_SEEDS, 3))
-    laws = {**batch._fixed(setup), **{law: batch.make(law, setup, start) for law in _LAWS}}
+    laws = {**batch.fixed_laws(setup), **{law: batch.make(law, setup, start) for law in LAWS}}
     if seconds:
-        laws = {n: x.controller if isinstance(x, batch._Behind) else x for n, x in laws.items()}
-    extents = batch._drawn(_SEEDS, TRIALS, seed)
-    found = _taken_up(setup, laws, extents, extents, seed, plan=plan)
+        laws = {n: x.controller if isinstance(x, batch.BehindModel) else x for n, x in laws.items()}
+    extents = batch.drawn_extents(_SEEDS, TRIALS, seed)
+    trials = _taken_up(setup, laws, extents, extents, seed, plan=plan)
     return {
-        "settled": batch._by_law(found, laws),
-        "hand": batch._by_law(found, laws, "hand"),
-        "stopped": int(sum(t.stops.stopped.sum() for t in found)),
+        "settled": batch.errors_by_law(trials, laws),
+        "hand": batch.errors_by_law(trials, laws, "hand"),
+        "stopped": int(sum(t.stops.stopped.sum() for t in trials)),
     }
 
 
 def _loads(setup: Setup, delays=(), seed: int = 2) -> dict:
     """Errors with loads that nobody knows of, in the first and second motion."""
-    laws = {**batch._fixed(setup), **{law: batch.make(law, setup) for law in _LAWS}}
-    extents, effects = batch._drawn(_SEEDS, 2, seed), batch._rounding(setup, _SEEDS, seed)
+    laws = {**batch.fixed_laws(setup), **{law: batch.make(law, setup) for law in LAWS}}
+    extents, effects = (
+        batch.drawn_extents(_SEEDS, 2, seed),
+        batch.with_rounding(setup, _SEEDS, seed),
+    )
     rows: list = []
     settings = [(m, 0) for m in _LOADS] + [(_PICKED, late) for late in delays]
     for mass, late in settings:
         slow = replace(effects, actuator=(*effects.actuator, Delay(late)))
-        found, _ = batch._trials(laws, extents, with_load(setup.arm, mass), slow)
-        rows.append({"load": mass, "late": late, "settled": batch._by_law(found, laws)})
+        trials, _ = batch.run_trials(laws, extents, with_load(setup.arm, mass), slow)
+        rows.append({"load": mass, "late": late, "settled": batch.errors_by_law(trials, laws)})
     return {"rows": rows}
 
 
@@ -127,8 +132,8 @@ def _sensors(seed: int = 3) -> dict:
     """The third and fourth motion over the encoder, with a tachometer and without."""
     runs, setup = len(_BITS) * _SEEDS, JOINT_DAMPING
     step = np.repeat(2 * np.pi / 2 ** np.array(_BITS), _SEEDS)
-    effects, rows = batch._rounding(setup, runs, seed, step), {}
-    extents = np.tile(batch._drawn(_SEEDS, TRIALS, seed), (1, len(_BITS), 1))
+    effects, rows = batch.with_rounding(setup, runs, seed, step), {}
+    extents = np.tile(batch.drawn_extents(_SEEDS, TRIALS, seed), (1, len(_BITS), 1))
     start = np.broadcast_to(_BEGIN * batch.TRUTH, (runs, 3))
 
     def exact(q, qd, torque):
@@ -141,13 +146,13 @@ def _sensors(seed: int = 3) -> dict:
         "Craig, exact": batch.make("measured acceleration", setup, start, acceleration=exact),
     }
     for velocity in ("tachometer", "difference"):
-        found, after = batch._trials(laws, extents, setup.arm, effects, velocity=velocity)
+        trials, after = batch.run_trials(laws, extents, setup.arm, effects, velocity=velocity)
         rows[velocity] = {
             name: {
                 "settled": errors[-1].reshape(len(_BITS), _SEEDS),
                 "estimate": after[name].estimate.reshape(len(_BITS), _SEEDS, -1),
             }
-            for name, errors in batch._by_law(found, laws).items()
+            for name, errors in batch.errors_by_law(trials, laws).items()
         }
     return rows
 
@@ -166,10 +171,10 @@ def _lyapunov() -> dict:
 
     t = np.arange(1, 1500) * 0.002
     y0 = np.concatenate([np.zeros(4), law.estimate])
-    found = solve_ivp(rates, (0.0, t[-1]), y0, "DOP853", t, rtol=1e-11, atol=1e-13).y.T
+    states = solve_ivp(rates, (0.0, t[-1]), y0, "DOP853", t, rtol=1e-11, atol=1e-13).y.T
     wanted = smooth_pick_and_place(extents, t)
     truth = law.lyapunov(
-        CMU_DD_ARM_II, batch.TRUTH, found[:, 4:], wanted, found[:, :2], found[:, 2:4]
+        CMU_DD_ARM_II, batch.TRUTH, states[:, 4:], wanted, states[:, :2], states[:, 2:4]
     )
     rows = {"continuous": _rises(truth)}
     grid = np.arange(-50, 1550) * 0.002
@@ -179,7 +184,7 @@ def _lyapunov() -> dict:
         ("family", pick_and_place(APPENDIX_I, grid)),
     ):
         reference = Trajectory(*(np.broadcast_to(x, (3, *x.shape)) for x in reference))
-        effects = Effects(encoder=(batch._Rounded(step[:, None, None], np.zeros(2)),))
+        effects = Effects(encoder=(batch.RoundedReadings(step[:, None, None], np.zeros(2)),))
         values = batch.sampled_lyapunov(law, reference, grid, effects)
         for bits, each in zip(("perfect", "16 bits", "12.5 bits"), values):
             rows[f"{name}, {bits}"] = [_rises(v, grid) for v in each]
@@ -205,17 +210,17 @@ def _excited(seed: int = 4, count: int = 10) -> dict:
     """What is found along single motions, repeated, and along the family; no friction."""
     extents = np.concatenate([APPENDIX_I, APPENDIX_I[:1]])
     course = np.broadcast_to(extents, (count, *extents.shape)).copy()
-    course[:, -1] = batch._drawn(1, count, seed)[:, 0]
+    course[:, -1] = batch.drawn_extents(1, count, seed)[:, 0]
     start = np.broadcast_to(_BEGIN * batch.TRUTH, (len(extents), 3))
     laws = {
         "learning": batch.make("rigid body", STATE_FEEDBACK, start),
         "knowing": batch.make("rigid body", STATE_FEEDBACK, factor=0.0),
         "not learning": batch.make("rigid body", STATE_FEEDBACK, start, factor=0.0),
     }
-    found, laws = batch._trials(laws, course, CMU_DD_ARM_II, IDEAL)
+    trials, laws = batch.run_trials(laws, course, CMU_DD_ARM_II, IDEAL)
     return {
         "eigenvalues": np.linalg.eigvalsh(batch.excitation(APPENDIX_I)),
-        "settled": batch._by_law(found, laws),
+        "settled": batch.errors_by_law(trials, laws),
         "estimate": laws["learning"].estimate / batch.TRUTH,
     }
 
@@ -235,11 +240,13 @@ def _drift(seed: int = 5, count: int = 10) -> dict:
     }
     step = np.where(np.arange(runs) < _SEEDS, setup.effects.encoder[0].step, 0.0)
     course = np.broadcast_to(APPENDIX_I[4], (count, runs, 2))
-    found, _ = batch._trials(laws, course, setup.arm, batch._rounding(setup, runs, seed, step))
+    trials, _ = batch.run_trials(
+        laws, course, setup.arm, batch.with_rounding(setup, runs, seed, step)
+    )
     return {
-        "settled": batch._by_law(found, laws),
+        "settled": batch.errors_by_law(trials, laws),
         "estimates": {
-            n: np.stack([t.laws[n].estimate for t in found])[..., :3] / batch.TRUTH for n in laws
+            n: np.stack([t.laws[n].estimate for t in trials])[..., :3] / batch.TRUTH for n in laws
         },
     }
 
@@ -249,7 +256,7 @@ def _compensation(setup: Setup, seed: int = 6) -> dict:
     viscous, coulomb = (np.asarray(f.slope if k == 0 else f.level) for k, f in
                         enumerate(setup.effects.friction))  # fmt: skip
     right = np.concatenate([batch.TRUTH, viscous, coulomb])
-    only = np.where(np.arange(len(batch._FULL)) < 3, 0.0, 1.0)
+    only = np.where(np.arange(len(batch.WITH_FRICTION)) < 3, 0.0, 1.0)
     laws = {
         "none": batch.make("with friction", setup, factor=0.0),
         "adapted": batch.make("with friction", setup, np.broadcast_to(batch.TRUTH, (_SEEDS, 3))),
@@ -257,11 +264,14 @@ def _compensation(setup: Setup, seed: int = 6) -> dict:
     }
     inner = laws["adapted"].controller
     laws["adapted"] = replace(laws["adapted"], controller=replace(inner, rate=only * inner.rate))
-    found, after = batch._trials(
-        laws, batch._drawn(_SEEDS, TRIALS, seed), setup.arm, batch._rounding(setup, _SEEDS, seed)
+    trials, after = batch.run_trials(
+        laws,
+        batch.drawn_extents(_SEEDS, TRIALS, seed),
+        setup.arm,
+        batch.with_rounding(setup, _SEEDS, seed),
     )
     return {
-        "settled": batch._by_law(found, laws),
+        "settled": batch.errors_by_law(trials, laws),
         "estimate": after["adapted"].estimate[:, 3:],
         "truth": right[3:],
     }
@@ -281,10 +291,12 @@ def _bed(seed: int = 7, count: int = 3) -> dict:
     }
     for k, (name, added) in enumerate(_BED.items()):
         given = laws if k else {**laws, **bare}
-        effects = added(batch._rounding(setup, _SEEDS, seed))
-        found, after = batch._trials(given, batch._drawn(_SEEDS, count, seed), setup.arm, effects)
+        effects = added(batch.with_rounding(setup, _SEEDS, seed))
+        trials, after = batch.run_trials(
+            given, batch.drawn_extents(_SEEDS, count, seed), setup.arm, effects
+        )
         rows[name] = {
-            "settled": {n: x[-1] for n, x in batch._by_law(found, given).items()},
+            "settled": {n: x[-1] for n, x in batch.errors_by_law(trials, given).items()},
             "estimate": after["adapted"].estimate / _FRICTION_TRUTH,
         }
         if given is not laws:
@@ -295,7 +307,7 @@ def _bed(seed: int = 7, count: int = 3) -> dict:
 def _map(setup: Setup = JOINT_DAMPING) -> dict:
     """Where runs are stopped: rate of adaptation against delay, and why."""
     extents = np.tile(APPENDIX_I[[0, 5]], (len(_FACTORS), 1))
-    factor, names = np.repeat(_FACTORS, 2), _LAWS[1:]
+    factor, names = np.repeat(_FACTORS, 2), LAWS[1:]
     start, rows = np.broadcast_to(_BEGIN * batch.TRUTH, (len(extents), 3)), []
     for late in _LATE:
         laws = {n: batch.make(n, setup, start, factor) for n in names}

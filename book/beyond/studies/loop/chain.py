@@ -23,14 +23,14 @@ from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS
 _MOST = DD_ARM_II_IN_SPACE.joints  # six as the real arm, and one of the book's
 RATIOS = (0.8, 1.15, 0.9, 1.25, 0.7)  # frequencies of joints 3 to 7 over the elbow's; assumed
 _NOISE = 0.024  # torque noise of joints 3 to 7 over their torque's deviation, as of the first two
-_REACH = 10  # samples of a window on either side of its centre
-_SPACING = 5  # samples from tap to tap: 5 of the report's 21
-_EVERY = 2  # samples from the centre of a window to the next
-_MOTIONS = ("answered", "sine")  # by the joints' own loops; the reference's sine, without an end
+REACH = 10  # samples of a window on either side of its centre
+SPACING = 5  # samples from tap to tap: 5 of the report's 21
+EVERY = 2  # samples from the centre of a window to the next
+MOTIONS = ("answered", "sine")  # by the joints' own loops; the reference's sine, without an end
 
 
 @dataclass(frozen=True)
-class _Chain:
+class Chain:
     """An arm with all that a recording of it needs; arrays are joint by joint."""
 
     arm: SerialArm
@@ -62,7 +62,7 @@ class _Chain:
             states = np.stack([-np.sin(t), -omega * np.cos(t), omega**2 * np.sin(t)], -1)
             return np.repeat(states[:, None], self.joints, 1)
         end = round(MOTION_SECONDS / LOG_STEP)
-        found = np.zeros((t_steps, self.joints, 3))
+        response = np.zeros((t_steps, self.joints, 3))
         for j, (f, z, lead) in enumerate(zip(self.frequency, self.damping, self.lead)):
             pull = [-(f**2), -2 * z * f, f**2, 2 * z * f * lead]
             flow = np.array([[0, 1, 0, 0], pull, [0, 0, 0, 1], [0, 0, -(omega**2), 0]])
@@ -70,13 +70,13 @@ class _Chain:
             for k in range(t_steps - before):
                 if k == end:
                     state[2:] = 0.0
-                found[before + k, j] = *state[:2], flow[1] @ state
+                response[before + k, j] = *state[:2], flow[1] @ state
                 state = step @ state
-        return found
+        return response
 
 
 @cache
-def chain(joints: int, reading: str = JOINT_DAMPING.name) -> _Chain:
+def chain(joints: int, reading: str = JOINT_DAMPING.name) -> Chain:
     """The arm with its first joints free and the others locked, in a reading of the controller.
 
     Shoulder and elbow have its gains, friction and encoder. Further joints have the elbow's damping
@@ -95,7 +95,7 @@ def chain(joints: int, reading: str = JOINT_DAMPING.name) -> _Chain:
     coulomb = np.append(coulomb, coulomb[1] * share)
     lead = kd / (kd + viscous[:2])
     (noise,) = setup.effects.torque_sensor
-    made = _Chain(
+    result = Chain(
         locked(DD_ARM_II_IN_SPACE, joints),
         frequency[:joints],
         np.append(damping, [damping[1]] * 5)[:joints],
@@ -106,9 +106,9 @@ def chain(joints: int, reading: str = JOINT_DAMPING.name) -> _Chain:
         encoder.step,
         np.append(noise.std, np.zeros(5))[:joints],
     )
-    tau = made.torque(moved(made, extents(joints, 64, 0))[:, ::5])
-    made.noise[2:] = _NOISE * tau.std((0, 1))[2:]
-    return made
+    tau = result.torque(moved(result, extents(joints, 64, 0))[:, ::5])
+    result.noise[2:] = _NOISE * tau.std((0, 1))[2:]
+    return result
 
 
 def extents(joints: int, motions: int, seed: int) -> np.ndarray:
@@ -116,16 +116,16 @@ def extents(joints: int, motions: int, seed: int) -> np.ndarray:
     return np.random.default_rng((seed, joints)).uniform(0.0, MAX_EXTENT_DEG, (motions, joints))
 
 
-def moved(chain: _Chain, extents_deg, motion: str = "answered") -> np.ndarray:
-    """True states ``(runs, time, joint, 3)`` of motions with `_REACH` samples of rest around."""
+def moved(chain: Chain, extents_deg, motion: str = "answered") -> np.ndarray:
+    """True states ``(runs, time, joint, 3)`` of motions with `REACH` samples of rest around."""
     extents_deg = shaped("extents_deg", extents_deg, f"(runs, {chain.joints})")
-    samples = round(MOTION_SECONDS / LOG_STEP) + 2 * _REACH
-    unit = chain.answer(samples, _REACH, motion)
+    samples = round(MOTION_SECONDS / LOG_STEP) + 2 * REACH
+    unit = chain.answer(samples, REACH, motion)
     return np.deg2rad(extents_deg)[:, None, :, None] * unit
 
 
 @dataclass(frozen=True)
-class _Sample:
+class Sample:
     """Cases of motions: what networks see, the torque that is measured, and the truth."""
 
     windows: np.ndarray  # (cases, joint, taps): measured positions, rad
@@ -138,15 +138,15 @@ class _Sample:
         """Windows and torque."""
         return self.windows, self.torque
 
-    def thinned(self, most: int) -> _Sample:
+    def thinned(self, most: int) -> Sample:
         """At most so many cases: of every motion each k-th."""
         step = -(-len(self.torque) // most)
-        return _Sample(*(x[::step] for x in (self.windows, self.torque, self.states)), self.runs)
+        return Sample(*(x[::step] for x in (self.windows, self.torque, self.states)), self.runs)
 
 
 def recorded(
-    chain: _Chain, extents_deg, seed: int, motion: str = "answered", spacing: int = _SPACING
-) -> _Sample:
+    chain: Chain, extents_deg, seed: int, motion: str = "answered", spacing: int = SPACING
+) -> Sample:
     """Follow motions ``(runs, joint)`` exactly, and cut what is measured into windows.
 
     ``seed`` draws the torque noise and the encoder's zero; ``spacing`` are samples from one tap of
@@ -159,11 +159,11 @@ def recorded(
     for effect in (EncoderZero(zero), Quantisation(chain.encoder), EncoderZero(-np.array(zero))):
         read = effect.apply(read)
     runs, samples = read.shape[:2]
-    centres = np.arange(_REACH, samples - _REACH, _EVERY)
-    taps = centres[:, None] + np.arange(-_REACH, _REACH + 1, spacing)
+    centres = np.arange(REACH, samples - REACH, EVERY)
+    taps = centres[:, None] + np.arange(-REACH, REACH + 1, spacing)
     windows = np.moveaxis(read[:, taps], -1, -2).reshape(-1, chain.joints, taps.shape[1])
     true = states[:, centres]
     tau = chain.torque(true)
     tau = tau + rng.standard_normal(tau.shape) * chain.noise
     joints = chain.joints
-    return _Sample(windows, tau.reshape(-1, joints), true.reshape(-1, joints, 3), runs)
+    return Sample(windows, tau.reshape(-1, joints), true.reshape(-1, joints, 3), runs)

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beyond.studies.loop.run_time_parts import rounded
-from beyond.studies.loop.runs.adaptive import LIMITS, SIZES, TRUTH
+from beyond.studies.loop.adaptive_laws import LIMITS, SIZES, TRUTH
+from beyond.studies.loop.feedforwards import rounded
 from ddlib.dynamics import CMU_DD_ARM_II, with_load
 from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_COULOMB, JOINT_DAMPING_VISCOUS, KD
 from ddlib.simulation import CONTROL_STEP, REST
@@ -21,7 +21,7 @@ from ddlib.trajectories import MOTION_SECONDS
 TRIALS, LOAD = 4, 5.0  # motions with an empty hand, and as many with a load, kg
 _EXTENTS, _CORNER = (40.0, 30.0), 0.2  # degrees; s over which the plan's corners are averaged
 _AROUND = 75  # control samples of rest before and after a motion
-_SIGN = 0.02  # rad/s, over which Coulomb friction changes its sign
+_TANH_SPEED = 0.02  # rad/s, over which Coulomb friction changes its sign
 _RATE = 3.0 * SIZES**2  # of learning, as in the lesson
 _FRICTION = np.array([*JOINT_DAMPING_VISCOUS, *JOINT_DAMPING_COULOMB])
 _KNOWN = np.concatenate([TRUTH, _FRICTION])
@@ -77,7 +77,7 @@ def _regressor(q, qd, v, a) -> np.ndarray:
     Y[..., 1, 1] = c * a1 + s * w1 * v1
     for joint in (0, 1):
         Y[..., joint, 3 + joint] = v[..., joint]
-        Y[..., joint, 5 + joint] = np.tanh(v[..., joint] / _SIGN)
+        Y[..., joint, 5 + joint] = np.tanh(v[..., joint] / _TANH_SPEED)
     return Y
 
 
@@ -90,10 +90,10 @@ def _mass(numbers, q) -> tuple:
 
 def _free(numbers, q, qd) -> np.ndarray:
     """What friction and the turning of the links add to the joints' momentum, N m."""
-    found = -numbers[..., 3:5] * qd - numbers[..., 5:] * np.tanh(qd / _SIGN)
+    torque = -numbers[..., 3:5] * qd - numbers[..., 5:] * np.tanh(qd / _TANH_SPEED)
     turning = numbers[..., 1] * np.sin(q[..., 1]) * qd[..., 0] * (qd[..., 0] + qd[..., 1])
-    found[..., 1] -= turning
-    return found
+    torque[..., 1] -= turning
+    return torque
 
 
 def _accelerations(numbers, q, qd, torque) -> np.ndarray:
@@ -156,11 +156,11 @@ def errors(rivals=RIVALS, bits: float | None = None, filtered: float = 0.0) -> d
     plan.append(_regressor(plan[0], plan[1], plan[1], plan[2]))
     step = 0.0 if bits is None else 2 * np.pi / 2**bits
     share = -np.expm1(-CONTROL_STEP / filtered) if filtered else 1.0
-    batch, found = _Batch(rivals.values()), []
+    batch, by_trial = _Batch(rivals.values()), []
     for arm in TRIALS * [CMU_DD_ARM_II] + TRIALS * [with_load(CMU_DD_ARM_II, LOAD)]:
         true = np.array([arm.a, arm.b, arm.d, *_FRICTION])
-        found.append(_motion(batch, true, plan, step, share))
-    return dict(zip(rivals, np.stack(found, -1)))
+        by_trial.append(_motion(batch, true, plan, step, share))
+    return dict(zip(rivals, np.stack(by_trial, -1)))
 
 
 def _motion(batch: _Batch, true, plan, step: float, share: float) -> np.ndarray:

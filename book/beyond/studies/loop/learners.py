@@ -15,9 +15,9 @@ from beyond.control.feedback_error import (
 )
 from beyond.control.online import (
     LastLayer,
+    LinearFilter,
+    OnlineDescent,
     OnlineFeedforward,
-    _LinearFilter,
-    _OnlineDescent,
 )
 from ddlib.control import Feedforward
 from ddlib.dynamics import follow_hand
@@ -30,14 +30,14 @@ from ddlib.trajectories import MOTION_SECONDS, Trajectory, smooth_pick_and_place
 from workshop.report import results
 
 _SEEDS = 10
-_TRIALS = 10  # of one motion, or with one load
+TRIALS = 10  # of one motion, or with one load
 _WIDTH = 21
 
 # Range of the weights of hidden units that most learners never train: from the book's range of
 # initial weights they would hardly bend
 _FEATURES = 0.3
 NAMES = ("a", "b", "d", "F_v1", "F_v2", "F_c1", "F_c2")  # of the exact terms: arm and friction
-_RATE = 1.0  # of terms: 1/(s N m), over each term's mean square and their number
+TERMS_RATE = 1.0  # of terms: 1/(s N m), over each term's mean square and their number
 _PENALTY, FORGETTING = 1e-3, 0.999  # of recursive least squares: half after 7 s
 TRUST = 1.0  # penalty where the network was trained off-line
 REPLAY = 15  # earlier samples that are learnt again with each new one
@@ -62,7 +62,7 @@ class Draw:
 
         self.learnt, self.other = drawn(20, 45, 2), drawn(10, 45, 2)
         self.second = drawn(4, 10, 2) * np.sign(drawn(-1, 1, 2))
-        self.family = drawn(5, 45, 2 * _TRIALS, 2)
+        self.family = drawn(5, 45, 2 * TRIALS, 2)
         zero = drawn(0.0, setup.effects.encoder[0].step, 2)
         encoder = (EncoderZero(zero), *setup.effects.encoder, EncoderZero(-zero))
         self.effects = replace(setup.effects, encoder=encoder)
@@ -96,20 +96,20 @@ def grid(duration: float = MOTION_SECONDS) -> np.ndarray:
 
 def motions(draw: Draw) -> dict[str, tuple[np.ndarray, Trajectory]]:
     """Times and references ``(seeds, time, 2)`` from rest to rest without a jump, by name."""
-    found = {}
+    references = {}
     for name, speed in (("the same", 1.0), ("in 2/3 of the time", 1.5), ("in half the time", 2.0)):
         t = grid(MOTION_SECONDS / speed)
-        found[name] = t, smooth_pick_and_place(draw.learnt, t, speed)
+        references[name] = t, smooth_pick_and_place(draw.learnt, t, speed)
     t = grid()
-    found["other extents"] = t, smooth_pick_and_place(draw.other, t)
+    references["other extents"] = t, smooth_pick_and_place(draw.other, t)
     slow = smooth_pick_and_place(0.6 * draw.learnt, t)
     third = 3 * t * ((t >= 0) & (t < MOTION_SECONDS))  # three turns in the time of one
     fast = smooth_pick_and_place(draw.second, third % MOTION_SECONDS)
     both = zip(slow, fast, (1, 3, 9))
     moving = ((t >= 0) & (t < MOTION_SECONDS))[:, None]
-    found["two harmonics"] = t, Trajectory(*(a + moving * n * b for a, b, n in both))
-    found["circle"] = t, _round(draw, t)
-    return found
+    references["two harmonics"] = t, Trajectory(*(a + moving * n * b for a, b, n in both))
+    references["circle"] = t, _round(draw, t)
+    return references
 
 
 def _round(draw: Draw, t) -> Trajectory:
@@ -127,7 +127,7 @@ def _round(draw: Draw, t) -> Trajectory:
 class Terms:
     """Feedback-error learning of given terms, whose weights outlive a run."""
 
-    def __init__(self, terms, draw: Draw, rate=_RATE):
+    def __init__(self, terms, draw: Draw, rate=TERMS_RATE):
         t = grid()
         extents = np.stack(np.meshgrid([10, 25, 40], [10, 25, 40]), -1).reshape(-1, 2)
         size = (terms(*smooth_pick_and_place(extents, t)) ** 2).sum(-2).mean((0, 1))
@@ -160,16 +160,18 @@ class _Windows:
         """Nothing to do: the learner has learnt during the run."""
 
 
-class _Memory:
+class Memory:
     """The memory of a motion; it learns after each trial."""
 
     def __init__(self, draw: Draw):
         self.memory = MotionMemory(draw.setup.controller, *MEMORY[draw.setup.name])
 
     def controller(self, learning=True):
+        """The memory as a controller; it learns after the trial in any case."""
         return Watched(self.memory)
 
     def keep(self, watched):
+        """Learn from what was watched in a trial."""
         self.memory.learn(watched.law)
 
 
@@ -177,49 +179,47 @@ def _recursion(penalty):
     return lambda weights: RecursiveLeastSquares(weights, penalty, FORGETTING)
 
 
-def _last_layer(model: TorqueModel, draw: Draw, penalty: float = _PENALTY) -> _Windows:
+def last_layer(model: TorqueModel, draw: Draw, penalty: float = _PENALTY) -> _Windows:
     """The network whose last layer learns by recursive least squares from measured windows."""
     return _Windows(LastLayer(model, _recursion(penalty)), "torque", draw)
 
 
-def _linear_filter(draw: Draw) -> _Windows:
+def linear_filter(draw: Draw) -> _Windows:
     """A linear filter of the window that learns in the same way, from nothing."""
     zero = np.zeros((1, draw.seeds, 2, 2 * _WIDTH + 1))
-    return _Windows(_LinearFilter(draw.trained.inputs, zero, _recursion(_PENALTY)), "torque", draw)
+    return _Windows(LinearFilter(draw.trained.inputs, zero, _recursion(_PENALTY)), "torque", draw)
 
 
-def _by_feedback(model: TorqueModel, draw: Draw, times=1.0) -> _Windows:
+def taught_by_feedback(model: TorqueModel, draw: Draw, times=1.0) -> _Windows:
     """The network that learns from desired windows and the feedback's torque."""
     rate = _BY_FEEDBACK[draw.setup.name] * np.asarray(times)
-    return _Windows(_OnlineDescent(model, rate), "feedback", draw)
+    return _Windows(OnlineDescent(model, rate), "feedback", draw)
 
 
-def _lineup(draw: Draw) -> dict[str, object]:
+def motion_learners(draw: Draw) -> dict[str, object]:
     """The learners that practise one motion, all from nothing."""
     return {
         "exact terms": Terms(RigidBodyTerms(NAMES), draw),
         "generic terms": Terms(GenericTerms(), draw),
-        "network, by feedback": _by_feedback(draw.untrained, draw),
-        "network, last layer": _last_layer(draw.untrained, draw),
-        "linear filter": _linear_filter(draw),
-        "memory": _Memory(draw),
+        "network, by feedback": taught_by_feedback(draw.untrained, draw),
+        "network, last layer": last_layer(draw.untrained, draw),
+        "linear filter": linear_filter(draw),
+        "memory": Memory(draw),
     }
 
 
-def _candidates(draw: Draw) -> dict[str, object]:
+def family_learners(draw: Draw) -> dict[str, object]:
     """The learners of the family: from nothing, and from networks trained off-line."""
     return {
-        "one pass": _Windows(_OnlineDescent(draw.untrained, _ONE_PASS), "torque", draw),
-        "replay": _Windows(
-            _OnlineDescent(draw.untrained, _REPLAYED, replay=REPLAY), "torque", draw
-        ),
-        "last layer": _last_layer(draw.untrained, draw),
-        "by feedback": _by_feedback(draw.untrained, draw),
-        "linear filter": _linear_filter(draw),
-        "off-line, as it is": _Windows(_OnlineDescent(draw.trained, 0.0), "nobody", draw),
+        "one pass": _Windows(OnlineDescent(draw.untrained, _ONE_PASS), "torque", draw),
+        "replay": _Windows(OnlineDescent(draw.untrained, _REPLAYED, replay=REPLAY), "torque", draw),
+        "last layer": last_layer(draw.untrained, draw),
+        "by feedback": taught_by_feedback(draw.untrained, draw),
+        "linear filter": linear_filter(draw),
+        "off-line, as it is": _Windows(OnlineDescent(draw.trained, 0.0), "nobody", draw),
         "off-line, replay": _Windows(
-            _OnlineDescent(draw.trained, _TRAINED, replay=REPLAY), "torque", draw
+            OnlineDescent(draw.trained, _TRAINED, replay=REPLAY), "torque", draw
         ),
-        "off-line, last layer": _last_layer(draw.trained, draw, TRUST),
-        "off-line, by feedback": _by_feedback(draw.trained, draw),
+        "off-line, last layer": last_layer(draw.trained, draw, TRUST),
+        "off-line, by feedback": taught_by_feedback(draw.trained, draw),
     }

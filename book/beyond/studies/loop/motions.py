@@ -10,7 +10,7 @@ from scipy.interpolate import make_interp_spline
 from scipy.spatial import cKDTree
 
 from beyond.rivals.protocol import Cases
-from beyond.studies.loop.run_time_parts import _on_days
+from beyond.studies.loop.feedforwards import on_days
 from ddlib._check import finite_array, integer, one_of, positive, seed_number, shaped
 from ddlib.analysis import cells_reached
 from ddlib.dynamics import ELBOWS, Arm, follow_hand
@@ -27,7 +27,7 @@ from ddlib.trajectories import (
 )
 
 # 1,500 cases each; "both": every second case of the first two
-_FAMILIES = ("pick and place", "circles", "both", "via points")
+FAMILIES = ("pick and place", "circles", "both", "via points")
 _VIA, MOST = 3, 6  # via points of the training motions, and most that are tested
 _LEG = 1.5  # s, from point to point of steady motions
 RADIUS = (0.04, 0.12)  # m
@@ -132,9 +132,9 @@ def _around(arm: Arm, centre, radius, phase, elbow: str = "positive") -> Traject
     along = np.concatenate([np.cos(angle), np.sin(angle)], -1)
     across = np.concatenate([-np.sin(angle), np.cos(angle)], -1)
     size = radius[..., None, None]
-    hand = finite_array("centre", centre, 2)[..., None, :] + size * along
+    places = finite_array("centre", centre, 2)[..., None, :] + size * along
     pull = size * (change * across - rate**2 * along)
-    return follow_hand(arm, hand, size * rate * across, pull, elbow)
+    return follow_hand(arm, places, size * rate * across, pull, elbow)
 
 
 def _via_points(points, t, seconds: float = MOTION_SECONDS) -> Trajectory:
@@ -176,13 +176,13 @@ def recorded(
     )
 
 
-def _learnt(runs: dict[str, Recording], width: int) -> dict[str, Cases]:
-    """Windows of each of `_FAMILIES`, from recordings by name: the same number of cases."""
-    found = {name: Cases.windows(run, width) for name, run in runs.items()}
-    halves = [found[name] for name in ("pick and place", "circles")]
+def training_cases(runs: dict[str, Recording], width: int) -> dict[str, Cases]:
+    """Windows of each of `FAMILIES`, from recordings by name: the same number of cases."""
+    cases = {name: Cases.windows(run, width) for name, run in runs.items()}
+    halves = [cases[name] for name in ("pick and place", "circles")]
     x, torque = (np.concatenate([getattr(c, n)[::2] for c in halves]) for n in ("x", "torque"))
-    found["both"] = Cases(x, torque, "windows", LOG_STEP)
-    return {name: found[name] for name in _FAMILIES}
+    cases["both"] = Cases(x, torque, "windows", LOG_STEP)
+    return {name: cases[name] for name in FAMILIES}
 
 
 def _small_circles(runs: int, seed: int) -> Circles:
@@ -191,7 +191,7 @@ def _small_circles(runs: int, seed: int) -> Circles:
     return replace(whole, **{name: draw.uniform(*r, runs) for name, r in _SMALL.items()})
 
 
-def _asked(setup: Setup, members: int, vias: bool = True) -> dict[str, Recording]:
+def test_recordings(setup: Setup, members: int, vias: bool = True) -> dict[str, Recording]:
     """Recordings of the tests: another draw of each family, and what lies beyond both."""
     today, t, arm = setup.repeated(TEST_DAY), times(), setup.arm
     circles = random_circles(members, TEST_DAY)
@@ -201,17 +201,17 @@ def _asked(setup: Setup, members: int, vias: bool = True) -> dict[str, Recording
         "circles, other elbow": stirred(arm, circles, t, "positive"),
         "small circles": stirred(arm, _small_circles(members, TEST_DAY), t),
     }
-    found = {
+    recordings = {
         "pick and place": today.record(random_extents(members, TEST_DAY)),
         "trajectory 6": today.record(APPENDIX_I[5:]),
         **{name: recorded(today, reference) for name, reference in references.items()},
     }
-    for count in range(1, MOST + 1) if vias else ():
-        points, seconds = _random_points(members, count, TEST_DAY), _LEG * (count + 1)
-        found[f"{count} via points"] = recorded(today, _via_points(points, t))
+    for number in range(1, MOST + 1) if vias else ():
+        points, seconds = _random_points(members, number, TEST_DAY), _LEG * (number + 1)
+        recordings[f"{number} via points"] = recorded(today, _via_points(points, t))
         steady = _via_points(points, times(seconds), seconds)
-        found[f"{count} via points, steady"] = recorded(today, steady, seconds)
-    return found
+        recordings[f"{number} via points, steady"] = recorded(today, steady, seconds)
+    return recordings
 
 
 def states(recording: Recording, setup: Setup) -> np.ndarray:
@@ -241,7 +241,7 @@ def _shared_cells(points, among, cells: int) -> float:
     return (mine + others - either) / mine
 
 
-def _coverage(setup: Setup, tests: dict, members: int) -> dict:
+def coverage(setup: Setup, tests: dict, members: int) -> dict:
     """Shared cells and distances of two families, both ways, beside a second draw of the same."""
     today, pair = setup.repeated(TEST_DAY), ("pick and place", "circles")
     again = (
@@ -254,12 +254,12 @@ def _coverage(setup: Setup, tests: dict, members: int) -> dict:
     low, high, deviation = every.min(0), every.max(0), every.std(0)
     named = first | {f"{name} again": x for name, x in second.items()}
     cube = {n: np.clip((2 * x - low - high) / (high - low), -1, 1) for n, x in named.items()}
-    found: dict = {"tied": {}}
+    result: dict = {"tied": {}}
     for name, x in first.items():
-        found["tied"][name] = [np.corrcoef(x[:, k], x[:, k + 2])[0, 1] for k in (0, 3)]
+        result["tied"][name] = [np.corrcoef(x[:, k], x[:, k + 2])[0, 1] for k in (0, 3)]
     for (part, axes), (name, other) in product(_AXES.items(), (pair, pair[::-1])):
         mine = (first[name] / deviation)[:, axes]
-        found.setdefault(part, {})[name] = {
+        result.setdefault(part, {})[name] = {
             kind: {
                 "shared": _shared_cells(cube[name][:, axes], cube[label][:, axes], CELLS),
                 "distance": np.median(_nearest_distances(mine, (x / deviation)[:, axes])),
@@ -269,17 +269,17 @@ def _coverage(setup: Setup, tests: dict, members: int) -> dict:
                 ("same family", f"{name} again", second[name]),
             )
         }
-    return found
+    return result
 
 
 _TRAINED = 5  # motions of a family on a day: as many as Appendix I has for training
 
 
-def _on_several_days(setup: Setup, references: list[Trajectory], days) -> list[Recording]:
+def on_several_days(setup: Setup, references: list[Trajectory], days) -> list[Recording]:
     """Recordings of references of each day, with its own zero of the encoders and noise."""
     days = shaped("days", days, f"({len(references)},)").astype(int)
     together = Trajectory(*(np.stack(parts) for parts in zip(*references)))
-    today = replace(setup, effects=_on_days(setup.effects, setup, days))
+    today = replace(setup, effects=on_days(setup.effects, setup, days))
     seeds = 1000 * (1 + days[:, None]) + np.arange(together.q.shape[1])
     log = recorded(today, together, seed=seeds)
     return [log[k] for k in range(len(days))]
@@ -295,7 +295,7 @@ def training(setup: Setup, days) -> list[dict[str, Recording]]:
     }
     each = [[make(day) for make in references.values()] for day in days]
     joined = [Trajectory(*(np.concatenate(parts) for parts in zip(*day))) for day in each]
-    logs = _on_several_days(setup, joined, days)
+    logs = on_several_days(setup, joined, days)
     return [
         {name: log[k * _TRAINED : (k + 1) * _TRAINED] for k, name in enumerate(references)}
         for log in logs

@@ -15,8 +15,8 @@ from beyond.rivals.identified import Identified, Linear
 from beyond.rivals.networks import BySolver
 from beyond.rivals.protocol import Cases, Estimating, Rival
 from beyond.studies.loop import motions
+from beyond.studies.loop.feedforwards import exact, through_window
 from beyond.studies.loop.motions import training
-from beyond.studies.loop.run_time_parts import _through_window, exact
 from ddlib.analysis import CLASSES, calibrated, classify, heard, unit_inputs
 from ddlib.control import Feedforward
 from ddlib.dynamics import ELBOWS, end_point_error, reach
@@ -64,16 +64,16 @@ def _maker(setup: Setup, name: str, seed: int) -> Rival:
 
 def _errors(model: Callable, tests: dict[str, Cases]) -> dict[str, list[float]]:
     """RMSS by the test's own deviation, and RMS errors of both joints (N m), of each test."""
-    found = {}
+    errors = {}
     with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):
         for name, cases in tests.items():
             torque = model(cases.x)
             left = np.sqrt(((torque - cases.torque) ** 2).mean(0))
-            found[name] = [float(rmss(torque, cases.torque)), *left]
-    return found
+            errors[name] = [float(rmss(torque, cases.torque)), *left]
+    return errors
 
 
-def _fitted(rival: Rival, cases: Cases) -> Rival:
+def fitted(rival: Rival, cases: Cases) -> Rival:
     """The rival, trained for as many steps as it has."""
     with warnings.catch_warnings(action="ignore", category=NotConverged):
         return rival.fit(cases)
@@ -88,29 +88,29 @@ def _transfer(setup: Setup, names, width: int, families, runs: list, tests: dict
     """Every rival trained on each family, day by day, and tested: rivals, and errors by day."""
     answers = _answers(tests, width)
     rivals: dict = {pair: [] for pair in product(names, families)}
-    found: dict = {name: {family: {} for family in families} for name in names}
+    errors: dict = {name: {family: {} for family in families} for name in names}
     for day, run in enumerate(runs):
-        cases = motions._learnt(run, width)
+        cases = motions.training_cases(run, width)
         for (name, family), trained in rivals.items():
-            trained.append(_fitted(_maker(setup, name, day), cases[family]))
+            trained.append(fitted(_maker(setup, name, day), cases[family]))
             every = _errors(trained[-1].torque, {"training": cases[family], **answers})
             for part, error in every.items():
-                found[name][family].setdefault(part, []).append(error)
-    return rivals, found
+                errors[name][family].setdefault(part, []).append(error)
+    return rivals, errors
 
 
 def _wider(setup: Setup, runs: list, tests: dict) -> dict:
     """Networks of other windows: those of Table 4-1, and as many that learnt circles."""
-    found = {}
+    by_width = {}
     for width in _WIDER:
-        answers, table = _answers(tests, width), results.networks(width, setup.name)
+        answers, networks = _answers(tests, width), results.networks(width, setup.name)
         mine: dict = {}
         for k in range(len(runs)):
-            for part, error in _errors(table[k].torque, answers).items():
+            for part, error in _errors(networks[k].torque, answers).items():
                 mine.setdefault(part, []).append(error)
-        other = _transfer(setup, _NAMES[:1], width, motions._FAMILIES[1:2], runs, tests)[1]
-        found[str(width)] = {"pick and place": mine, **other["network"]}
-    return found
+        other = _transfer(setup, _NAMES[:1], width, motions.FAMILIES[1:2], runs, tests)[1]
+        by_width[str(width)] = {"pick and place": mine, **other["network"]}
+    return by_width
 
 
 def through(setup: Setup, torques, reference: Trajectory) -> Recording:
@@ -127,7 +127,7 @@ def off(setup: Setup, log: Recording) -> np.ndarray:
     return 1000 * np.sqrt((error**2).sum(-1).mean(-1))
 
 
-def _hand_errors(setup: Setup, torques: dict[str, list], reference: Trajectory) -> dict:
+def hand_errors(setup: Setup, torques: dict[str, list], reference: Trajectory) -> dict:
     """Errors of the hand (mm), shape (models, runs), by the name of the feedforward torques."""
     every = np.stack([torque for several in torques.values() for torque in several])
     ends = np.cumsum([len(several) for several in torques.values()])[:-1]
@@ -139,7 +139,7 @@ def boxes(setup: Setup, models: dict[str, list]) -> dict[str, list[Callable]]:
     return {
         "none": [lambda q, qd, qdd: np.zeros_like(q)],
         "exact equations": [exact(setup)],
-        "exact behind a window": [_through_window(exact(setup))],
+        "exact behind a window": [through_window(exact(setup))],
         **{n: [WindowFeedforward(model, _WIDTH) for model in ms] for n, ms in models.items()},
     }
 
@@ -157,12 +157,12 @@ def _hands(setup: Setup, rivals: dict, members: int) -> dict:
         if name != "two units"
     }
     named = boxes(setup, models)
-    found: dict = {name: {} for name in named}
+    errors: dict = {name: {} for name in named}
     for motion, reference in references.items():
         torques = {name: [f(*reference) for f in ms] for name, ms in named.items()}
-        for name, off_by in _hand_errors(today, torques, reference).items():
-            found[name][motion] = off_by
-    return found
+        for name, off_by in hand_errors(today, torques, reference).items():
+            errors[name][motion] = off_by
+    return errors
 
 
 def _described(rivals: list, runs: list, family: str, setup: Setup) -> dict:
@@ -184,20 +184,20 @@ def _described(rivals: list, runs: list, family: str, setup: Setup) -> dict:
 
 def _filters(setup: Setup, rivals: dict, runs: list) -> dict:
     """Filters on the real torques and on torques with random phases, a draw for each day."""
-    found: dict = {"classes": list(CLASSES)}
+    row: dict = {"classes": list(CLASSES)}
     for family in ("circles", "pick and place"):
         null, left = [], []
         for day, run in enumerate(runs):
             cases = Cases.windows(run[family], _WIDTH)
             drawn = surrogate("phases", cases.torque.reshape(5, -1, 2), day).reshape(-1, 2)
             left.append(related(drawn, cases.x))
-            null.append(_fitted(_maker(setup, "network", day), replace(cases, torque=drawn)))
-        found[family] = {
+            null.append(fitted(_maker(setup, "network", day), replace(cases, torque=drawn)))
+        row[family] = {
             "real": _described(rivals["network", family], runs, family, setup),
             "phases": _described(null, runs, family, setup),
             "related": left,
         }
-    return found
+    return row
 
 
 def network_path(family: str):
@@ -207,13 +207,13 @@ def network_path(family: str):
 
 def _keep(setup: Setup, rivals: dict, table: dict) -> dict[str, TorqueModel]:
     """Save, of each family, the network with the median error on its own test."""
-    kept = {}
-    for family in motions._FAMILIES[:3]:
+    models = {}
+    for family in motions.FAMILIES[:3]:
         part = family if family != "both" else "circles"
         order = np.argsort([error[0] for error in table["network"][family][part]])
-        kept[family] = rivals["network", family][order[len(order) // 2]].model
-        kept[family].save(network_path(family))
-    return kept
+        models[family] = rivals["network", family][order[len(order) // 2]].model
+        models[family].save(network_path(family))
+    return models
 
 
 def _picker(setup: Setup, kept: dict[str, TorqueModel], places=None) -> None:
@@ -230,12 +230,12 @@ def _picker(setup: Setup, kept: dict[str, TorqueModel], places=None) -> None:
     shown = slice(first, first + round(MOTION_SECONDS / CONTROL_STEP), SHOWN * 5)
     reached = np.zeros((len(distance), len(elbows)), bool)
     torque = np.zeros((3, *reached.shape, len(t[shown]), 2))
-    hand = np.zeros((len(named), *reached.shape))
+    hand_errors = np.zeros((len(named), *reached.shape))
     for e, elbow in enumerate(elbows):
         reference = motions.stirred(setup.arm, circles, t, elbow)
         torques = np.stack([model(*reference) for model in named.values()])
         reached[fine, e] = True
-        hand[:, fine, e] = off(setup, through(setup, torques, reference))
+        hand_errors[:, fine, e] = off(setup, through(setup, torques, reference))
         torque[:, fine, e] = torques[1:4][:, :, shown]
     part = _PICKER.with_name(_PICKER.name + ".part")
     with open(part, "wb") as file:
@@ -243,7 +243,7 @@ def _picker(setup: Setup, kept: dict[str, TorqueModel], places=None) -> None:
             file,
             names=list(named),
             reached=reached.reshape(shape),
-            hand=hand.reshape(-1, *shape).astype(np.float32),
+            hand=hand_errors.reshape(-1, *shape).astype(np.float32),
             torque=torque.reshape(3, *shape, -1, 2).astype(np.float16),
         )
     os.replace(part, _PICKER)
@@ -252,28 +252,28 @@ def _picker(setup: Setup, kept: dict[str, TorqueModel], places=None) -> None:
 @study
 def _stirring(days: int = _DAYS, members: int = _MEMBERS) -> dict:
     """Networks and rivals of each family of motions on all others, and their hands' errors."""
-    found: dict = {"days": days, "members": members, "width": _WIDTH, "setups": {}}
+    result: dict = {"days": days, "members": members, "width": _WIDTH, "setups": {}}
     every = (
-        (JOINT_DAMPING, _NAMES, motions._FAMILIES),
-        (STATE_FEEDBACK, _NAMES[::2], motions._FAMILIES[:3]),
+        (JOINT_DAMPING, _NAMES, motions.FAMILIES),
+        (STATE_FEEDBACK, _NAMES[::2], motions.FAMILIES[:3]),
     )
     for setup, names, families in every:
         main = setup is JOINT_DAMPING
         setup = replace(setup, steps=JOINT_DAMPING.steps, decay=JOINT_DAMPING.decay)
         runs = training(setup, range(days))
-        tests = motions._asked(setup, members, vias=main)
+        tests = motions.test_recordings(setup, members, vias=main)
         if not main:
             names = (*names, "identified")
-        rivals, table = _transfer(setup, names, _WIDTH, families, runs, tests)
+        rivals, errors = _transfer(setup, names, _WIDTH, families, runs, tests)
         row = {
             "deviations": {n: Cases.windows(r, _WIDTH).torque.std(0) for n, r in tests.items()},
-            "errors": table,
-            "coverage": motions._coverage(setup, tests, members),
+            "errors": errors,
+            "coverage": motions.coverage(setup, tests, members),
             "hands": _hands(setup, rivals, members // 2),
         }
         if main:
             row["wider"] = _wider(setup, runs, tests)
             row["filters"] = _filters(setup, rivals, runs)
-            _picker(setup.repeated(motions.TEST_DAY), _keep(setup, rivals, table))
-        found["setups"][setup.name] = row
-    return found
+            _picker(setup.repeated(motions.TEST_DAY), _keep(setup, rivals, errors))
+        result["setups"][setup.name] = row
+    return result

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from beyond.control.feedback_error import FeedbackErrorLearning, RigidBodyTerms
-from beyond.studies.loop.runs.adaptive import (
-    _FULL,
+from beyond.studies.loop.adaptive_laws import (
     SMOOTH,
-    _Behind,
-    _drawn,
-    _rates,
+    WITH_FRICTION,
+    BehindModel,
+    drawn_extents,
     make,
+    rates_of_adaptation,
     trial,
 )
 from ddlib.control import pd
@@ -45,9 +45,11 @@ class _FeedbackError:
 
     def start(self, reference, step):
         # with one gain for all joints it would be Slotine & Li's law at the desired state
-        rate = _rates("with friction", JOINT_DAMPING, self.factor) / KD[0]
+        rate = rates_of_adaptation("with friction", JOINT_DAMPING, self.factor) / KD[0]
         feedback = pd(JOINT_DAMPING.controller.kp, KD)
-        learner = FeedbackErrorLearning(RigidBodyTerms(_FULL), rate, self.estimate, feedback)
+        learner = FeedbackErrorLearning(
+            RigidBodyTerms(WITH_FRICTION), rate, self.estimate, feedback
+        )
         return _Kept(learner.start(reference, step))
 
 
@@ -82,15 +84,17 @@ def _learned(load: int) -> dict[str, dict[str, np.ndarray]]:
         _LEARNERS[0]: make("with friction", setup, factor=0.0),
         _LEARNERS[1]: make("with friction", setup, factor=factor),
         _LEARNERS[2]: make("measured acceleration", setup, factor=factor),
-        _LEARNERS[3]: _Behind(_FeedbackError(begin, factor), SMOOTH),
+        _LEARNERS[3]: BehindModel(_FeedbackError(begin, factor), SMOOTH),
     }
-    errors, estimates = [], [np.broadcast_to(begin, (len(laws), runs, len(_FULL)))]
-    for extents in _drawn(1, _MOTIONS, seed=11):
+    errors, estimates = [], [np.broadcast_to(begin, (len(laws), runs, len(WITH_FRICTION)))]
+    for extents in drawn_extents(1, _MOTIONS, seed=11):
         done = trial(laws, np.tile(extents, (runs, 1)), arm, effects)
         laws = done.laws
         errors.append(np.minimum(done.settled, 1e3))  # of a stopped run it is infinite
         estimates.append(
-            np.stack([np.broadcast_to(x.estimate, (runs, len(_FULL))) for x in laws.values()])
+            np.stack(
+                [np.broadcast_to(x.estimate, (runs, len(WITH_FRICTION))) for x in laws.values()]
+            )
         )
     errors, estimates = np.stack(errors, -1), np.stack(estimates, -2)
     shape = (2, len(speeds))

@@ -29,7 +29,7 @@ import yaml
 
 from ddlib.setups import SETUPS
 from workshop import BOOK
-from workshop.report.evidence.claims import _OWN, Claim, load
+from workshop.report.evidence.claims import NOT_IN_PAPER, Claim, load
 
 _FILE = BOOK / "cards.yml"  # Where the cards are kept
 
@@ -90,30 +90,32 @@ class Card:
         kept = {k: row for k, row in self.rows.items() if _reading(k) in (reading, "")}
         return replace(self, rows=kept)
 
-    def verdict(self, of: Callable = attrgetter("verdict")) -> str:
+    def verdict(self, verdict_of: Callable = attrgetter("verdict")) -> str:
         """The card's word, of `WORDS`, by the written verdicts or by another function of a row."""
-        return _overall(map(of, self.deciding))
+        return _overall(map(verdict_of, self.deciding))
 
-    def sign(self, of: Callable = attrgetter("verdict")) -> str:
+    def sign(self, verdict_of: Callable = attrgetter("verdict")) -> str:
         """The word whose sign stands for the card; an own finding whose rows disagree is open."""
-        verdict = self.verdict(of)
+        verdict = self.verdict(verdict_of)
         return "undecided" if self.kind == "own" and verdict == "in part" else verdict
 
-    def word(self, of: Callable = attrgetter("verdict")) -> str:
+    def word(self, verdict_of: Callable = attrgetter("verdict")) -> str:
         """The card's word as it is shown: with "in part" goes how many rows hold."""
-        verdict = self.verdict(of)
-        told = OWN[verdict] if self.kind == "own" else verdict
+        verdict = self.verdict(verdict_of)
+        shown = OWN[verdict] if self.kind == "own" else verdict
         if verdict != "in part":
-            return told
-        verdicts = [of(claim) for claim in self.deciding]
+            return shown
+        verdicts = [verdict_of(claim) for claim in self.deciding]
         held = sum(v in ("reproduced", "qualitative") for v in verdicts)
-        return f"{told} ({held} of {len(verdicts)}{' held' * (self.kind == 'own')})"
+        return f"{shown} ({held} of {len(verdicts)}{' held' * (self.kind == 'own')})"
 
-    def spread(self, of: Callable = attrgetter("verdict")) -> dict[str, str]:
+    def spread(self, verdict_of: Callable = attrgetter("verdict")) -> dict[str, str]:
         """Its word under each of its readings, the best first."""
-        found = {reading: self.under(reading) for reading in self.readings}
-        order = sorted(found, key=lambda name: _BEST_FIRST.index(found[name].verdict(of)))
-        return {name: found[name].word(of) for name in order}
+        by_name = {reading: self.under(reading) for reading in self.readings}
+        order = sorted(
+            by_name, key=lambda name: _BEST_FIRST.index(by_name[name].verdict(verdict_of))
+        )
+        return {name: by_name[name].word(verdict_of) for name in order}
 
 
 def _reading(rows: str) -> str:
@@ -141,7 +143,7 @@ def _settled(verdicts: set[str]) -> str:
 @cache
 def _cards(path: Path = _FILE) -> tuple[Card, ...]:
     """All cards, in the order of the file, that have rows to judge."""
-    known, found = {claim.id: claim for claim in load()}, []
+    known, cards = {claim.id: claim for claim in load()}, []
 
     def rows(card: str, ids: Iterable[str]) -> tuple[Claim, ...]:
         if unknown := set(ids) - set(known):
@@ -150,15 +152,15 @@ def _cards(path: Path = _FILE) -> tuple[Card, ...]:
 
     for kind, entries in yaml.safe_load(path.read_text(encoding="utf-8")).items():
         for entry in entries:
-            by_reading = entry["rows"]
-            if not isinstance(by_reading, dict):
-                by_reading = {"": by_reading}
-            filled = {name: rows(entry["id"], ids) for name, ids in by_reading.items()}
+            by_name = entry["rows"]
+            if not isinstance(by_name, dict):
+                by_name = {"": by_name}
+            filled = {name: rows(entry["id"], ids) for name, ids in by_name.items()}
             filled = {name: row for name, row in filled.items() if row}
             beside = rows(entry["id"], entry.get("beside", ()))
             texts = (entry["id"], kind, entry["where"], entry["says"])
-            found.append(Card(*texts, filled or {"": beside}, beside if filled else ()))
-    return tuple(card for card in found if card.claims)
+            cards.append(Card(*texts, filled or {"": beside}, beside if filled else ()))
+    return tuple(card for card in cards if card.claims)
 
 
 def of_kind(*kinds: str) -> list[Card]:
@@ -166,31 +168,31 @@ def of_kind(*kinds: str) -> list[Card]:
     return [card for card in _cards() if card.kind in kinds]
 
 
-def tally(some: Iterable[Card], of: Callable = attrgetter("verdict")) -> dict[str, int]:
+def tally(cards: Iterable[Card], verdict_of: Callable = attrgetter("verdict")) -> dict[str, int]:
     """How many cards have which word of `WORDS`."""
-    found = [card.verdict(of) for card in some]
-    return {word: found.count(word) for word in WORDS}
+    verdicts = [card.verdict(verdict_of) for card in cards]
+    return {word: verdicts.count(word) for word in WORDS}
 
 
 def by_reading(
-    some: Iterable[Card], of: Callable = attrgetter("verdict")
+    cards: Iterable[Card], verdict_of: Callable = attrgetter("verdict")
 ) -> dict[str, dict[str, int]]:
     """The tally if one reading is the right one, for each of `READINGS`, the best-fitting first.
 
     That is the one with most cards that are reproduced, then with most that hold in kind.
     """
-    some = list(some)
-    found = {name: tally([card.under(name) for card in some], of) for name in READINGS}
+    cards = list(cards)
+    tallies = {name: tally([card.under(name) for card in cards], verdict_of) for name in READINGS}
 
     def fits(name):
-        return found[name]["reproduced"], found[name]["qualitative"]
+        return tallies[name]["reproduced"], tallies[name]["qualitative"]
 
-    return {name: found[name] for name in sorted(READINGS, key=fits, reverse=True)}
+    return {name: tallies[name] for name in sorted(READINGS, key=fits, reverse=True)}
 
 
 def worded(claim: Claim, text: str) -> str:
     """A text about a claim's verdict, in the words for own findings if it is one."""
-    if claim.printed != _OWN and claim.id not in _of_findings():
+    if claim.printed != NOT_IN_PAPER and claim.id not in _of_findings():
         return text
     words = {**OWN, "qualitative": "held in kind"}
     return re.sub("|".join(words), lambda match: words[match[0]], text)

@@ -11,11 +11,12 @@ An entry has these fields:
     "a real arm"; and the id of the claim whose sentence of the paper it judges once more. It is
     judged like the others and not counted twice among the paper's.
 ``chapter``
-    The page of the book that deals with it; `_LEDGER` if there is no other.
+    The page of the book that deals with it; `LEDGER` if there is no other.
 ``claim``
     What the paper says, in a few words of our own or a short quotation.
 ``printed``
-    The printed value: a number, or text such as "by eye"; `_OWN` for what this book claims itself.
+    The printed value: a number, or text such as "by eye"; `NOT_IN_PAPER` for what this book claims
+    itself.
 ``measure`` or ``find``, ``with``
     A function of `workshop.report.measures` as "module.function", and its keyword arguments, or
     one of `workshop.chapters` with "chapters." before, or one of Part IV by its full name,
@@ -66,17 +67,17 @@ from workshop import BOOK
 from workshop.report import results
 from workshop.report.evidence.expressions import find
 from workshop.report.evidence.verdicts import (
-    _VERDICTS,
+    VERDICTS,
     Measured,
-    _fresh,
-    _shares,
-    _stands,
+    not_contradicted,
     share_told,
+    shares_of_draws,
+    verdict_of_shares,
 )
 
-_FILE = BOOK / "claims.yml"  # Where the claims are kept
+CLAIMS_FILE = BOOK / "claims.yml"  # Where the claims are kept
 
-_LEDGER = "ledger"  # The page of all claims, and the chapter of those that no other page deals with
+LEDGER = "ledger"  # The page of all claims, and the chapter of those that no other page deals with
 
 # Environment variable with a folder in which notebooks that are built together share what they
 # measured: each runs in a process of its own, which an argument does not reach. Who sets it takes
@@ -85,7 +86,7 @@ SHARED = "DDLIB_MEASURED"
 
 # As `printed`: a claim of this book, to explain what the paper's section reports. It is judged
 # like the others, in its chapter, and is not counted among the paper's.
-_OWN = "not in the paper"
+NOT_IN_PAPER = "not in the paper"
 
 # Titles of the paper's sections; abstract and appendix are numbered so that they sort
 SECTIONS = {
@@ -139,7 +140,7 @@ class Claim:
             if not isinstance(value, str) or not value.strip():
                 raise ValueError(f"{name} of claim {self.id!r} must be text, got {value!r}")
         self.place()
-        one_of(f"verdict of claim {self.id!r}", self.verdict, _VERDICTS)
+        one_of(f"verdict of claim {self.id!r}", self.verdict, VERDICTS)
         testable = self.verdict != "not testable"
         if testable != bool(self.band) or (testable and not self.is_measured):
             raise ValueError(
@@ -162,7 +163,7 @@ class Claim:
         """Whether anything measures it."""
         return bool(self.measure or self.find)
 
-    def but_for_reading(self) -> tuple[str, str]:
+    def key_and_setup(self) -> tuple[str, str]:
         """What measures it without the argument ``setup``, and that: a reading of the loop."""
         rest = {name: value for name, value in self.arguments.items() if name != "setup"}
         key = json.dumps([self.measure, self.find, rest], sort_keys=True)
@@ -187,17 +188,17 @@ class Claim:
         What comes first in ``where`` counts. Tables and figures come after their section's
         text, whose subsections come in order: sort by this.
         """
-        found = _PLACE.search(self.where)
-        if found is None:
+        match = _PLACE.search(self.where)
+        if match is None:
             raise ValueError(
                 f"where of claim {self.id!r} must name a section from 1 to 7, a table, a figure, "
                 f"'Appendix I' or 'Abstract' of the paper, got {self.where!r}"
             )
-        if found["abstract"] or found["appendix"]:
-            return "0" if found["abstract"] else "8", 0, 0
-        if found["float"]:
-            return found["in"], 10 if found["float"] == "Table" else 20, int(found["no"])
-        return found["section"], int(found["part"] or 0), 0
+        if match["abstract"] or match["appendix"]:
+            return "0" if match["abstract"] else "8", 0, 0
+        if match["float"]:
+            return match["in"], 10 if match["float"] == "Table" else 20, int(match["no"])
+        return match["section"], int(match["part"] or 0), 0
 
     def measured(self) -> Measured:
         """What we find, by the claim's measuring function or expression."""
@@ -217,27 +218,27 @@ class Claim:
 
         Whether it stands: see `verdicts`. Without replicates it has to be `fresh`.
         """
-        found = self.shares()
-        stands = found and not results._committed() and _stands(self.verdict, found)
+        shares = self.shares()
+        stands = shares and not results._committed() and not_contradicted(self.verdict, shares)
         return self.verdict if stands else self.fresh()
 
     def fresh(self) -> str:
         """The verdict of the bands for the measured value alone, whatever is written."""
         if not self.band:
             return "not testable"
-        found = self.shares()
-        return _fresh(found) if found else self.of(self.measured().value)
+        shares = self.shares()
+        return verdict_of_shares(shares) if shares else self.verdict_for(self.measured().value)
 
     def shares(self) -> dict[str, float]:
         """Share of the replicates in which each verdict comes out; empty without replicates."""
         replicates = self.measured().replicates if self.band else None
-        return {} if replicates is None else _shares(self._of_each(replicates))
+        return {} if replicates is None else shares_of_draws(self._verdicts_for(replicates))
 
-    def of(self, value: float) -> str:
+    def verdict_for(self, value: float) -> str:
         """The verdict that the bands give for one value."""
-        return str(self._of_each([value])[0])
+        return str(self._verdicts_for([value])[0])
 
-    def _of_each(self, values) -> np.ndarray:
+    def _verdicts_for(self, values) -> np.ndarray:
         """The verdicts that the bands give for many values."""
         values = np.asarray(values)
         best = "by construction" if self.verdict == "by construction" else "reproduced"
@@ -247,32 +248,32 @@ class Claim:
 
     def edges(self) -> list[float]:
         """Values at which the verdict turns."""
-        found = []
+        edges = []
         for bounds in (self.band, self.loose):
-            found += [bounds[name] for name in ("from", "to") if name in bounds]
+            edges += [bounds[name] for name in ("from", "to") if name in bounds]
             if "factor" in bounds:
-                found += [self.printed / bounds["factor"], self.printed * bounds["factor"]]
-        return sorted(set(found))
+                edges += [self.printed / bounds["factor"], self.printed * bounds["factor"]]
+        return sorted(set(edges))
 
     def as_printed(self) -> str:
         """What the paper prints, for a table."""
-        if isinstance(self.printed, (str, _Printed)):
+        if isinstance(self.printed, (str, Printed)):
             return getattr(self.printed, "text", self.printed)
         return f"{self.printed:,g}"
 
-    def here(self) -> str:
+    def our_value(self) -> str:
         """What we find, for a table."""
         return self.measured().text if self.is_measured else "–"
 
-    def sure(self) -> str:
+    def verdict_with_share(self) -> str:
         """The verdict, and in which share of the draws it comes out where that was found."""
-        verdict, found = self.judge(), self.shares()
-        if not found:
+        verdict, shares = self.judge(), self.shares()
+        if not shares:
             return verdict
         if verdict == "undecided":
-            words = ", ".join(f"{share_told(share)} {name}" for name, share in found.items())
+            words = ", ".join(f"{share_told(share)} {name}" for name, share in shares.items())
             return f"undecided: {words} of draws"
-        return f"{verdict}, {share_told(found[verdict])} of draws"
+        return f"{verdict}, {share_told(shares[verdict])} of draws"
 
     def _within(self, bounds, values: np.ndarray) -> np.ndarray:
         if "is" in bounds:
@@ -290,7 +291,7 @@ def _measured(way: str) -> Measured:
     return joblib.Memory(folder, verbose=0).cache(_measure)(way) if folder else _measure(way)
 
 
-def _function(measure: str) -> Callable:
+def measuring_function(measure: str) -> Callable:
     """The function that a claim names: "module.function", with another room's name in front."""
     room = measure.partition(".")[0]
     places = {"beyond": measure, "chapters": f"workshop.{measure}"}
@@ -301,7 +302,7 @@ def _function(measure: str) -> Callable:
 def _measure(way: str) -> Measured:
     """What a function of some name or an expression finds with some arguments."""
     measure, expression, arguments = json.loads(way)
-    result = _function(measure)(**arguments) if measure else find(expression, arguments)
+    result = measuring_function(measure)(**arguments) if measure else find(expression, arguments)
     if not isinstance(result, Measured):
         raise TypeError(f"{measure} must return a Measured, got {result!r}")
     unclear = result.replicates is not None and np.isnan(result.replicates).any()
@@ -310,13 +311,13 @@ def _measure(way: str) -> Measured:
     return result
 
 
-class _Printed(float):
+class Printed(float):
     """A number that keeps the digits it is printed with."""
 
     def __new__(cls, text: str):
-        made = super().__new__(cls, text)
-        made.text = text
-        return made
+        number = super().__new__(cls, text)
+        number.text = text
+        return number
 
     def __getnewargs__(self):
         return (self.text,)
@@ -327,7 +328,7 @@ _VALUES = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _TEXTS = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
 
 
-def load(path: Path = _FILE) -> list[Claim]:
+def load(path: Path = CLAIMS_FILE) -> list[Claim]:
     """All claims, in the order of the file."""
     return list(_parsed(path.read_text(encoding="utf-8")))
 
@@ -335,8 +336,8 @@ def load(path: Path = _FILE) -> list[Claim]:
 def _sentence(says: str, **outcome) -> tuple[str, dict]:
     """What would refute a claim in words, and as sides and bounds of the measured value."""
     words = outcome.pop("as", None)
-    told = [words] if words else [f"{bound:,g}" for bound in outcome.values()]
-    return says.format(*told), outcome
+    filled = [words] if words else [f"{bound:,g}" for bound in outcome.values()]
+    return says.format(*filled), outcome
 
 
 @lru_cache(maxsize=4)
@@ -347,7 +348,7 @@ def _parsed(text: str) -> tuple[Claim, ...]:
         entry = dict(entry)
         entry["arguments"] = entry.pop("with", {})
         if isinstance(entry.get("printed"), float):
-            entry["printed"] = _Printed(plain["printed"])
+            entry["printed"] = Printed(plain["printed"])
         try:
             if isinstance(entry.get("refuted"), dict):
                 entry["refuted"], entry["outcome"] = _sentence(**entry["refuted"])
@@ -370,13 +371,13 @@ def measured(id: str) -> Measured:
     """What we find for one claim, for a page that quotes it."""
     by_id = {claim.id: claim for claim in load()}
     if id not in by_id:
-        raise ValueError(f"id must be of a claim in {_FILE.name}, got {id!r}")
+        raise ValueError(f"id must be of a claim in {CLAIMS_FILE.name}, got {id!r}")
     return by_id[id].measured()
 
 
 def of_the_paper() -> list[Claim]:
     """All claims but this book's own and those that are judged again on another arm."""
-    return [claim for claim in load() if claim.printed != _OWN and not claim.arm]
+    return [claim for claim in load() if claim.printed != NOT_IN_PAPER and not claim.arm]
 
 
 def judged_again(arm: str) -> list[tuple[Claim, Claim]]:
@@ -385,9 +386,9 @@ def judged_again(arm: str) -> list[tuple[Claim, Claim]]:
     return [(first[c.again], c) for c in first.values() if c.arm == arm and c.again]
 
 
-def _of_chapter(chapter: str) -> list[Claim]:
+def of_chapter(chapter: str) -> list[Claim]:
     """The claims that a page of the book deals with; an error if there are none."""
-    found = [claim for claim in load() if claim.chapter == chapter]
-    if not found:
-        raise ValueError(f"chapter must have claims in {_FILE.name}, got {chapter!r}")
-    return found
+    claims = [claim for claim in load() if claim.chapter == chapter]
+    if not claims:
+        raise ValueError(f"chapter must have claims in {CLAIMS_FILE.name}, got {chapter!r}")
+    return claims

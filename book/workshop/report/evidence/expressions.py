@@ -269,13 +269,15 @@ def _read(paths: str) -> np.ndarray:
     for path in paths.split(" or "):
         name, _, rest = path.partition("/")
         try:
-            found = np.asarray(_at(results.read(name), rest, path))
+            numbers = np.asarray(_at(results.read(name), rest, path))
         except ValueError as error:
             first = first or error
             continue
-        if found.dtype == object:  # null among numbers
-            found = np.array(found, float)
-        return np.where(np.isnan(found), np.inf, found) if found.dtype.kind == "f" else found
+        if numbers.dtype == object:  # null among numbers
+            numbers = np.array(numbers, float)
+        return (
+            np.where(np.isnan(numbers), np.inf, numbers) if numbers.dtype.kind == "f" else numbers
+        )
     raise first
 
 

@@ -69,13 +69,13 @@ def _line(claim: Claim) -> str:
     return " | ".join(cells).rstrip(" |")
 
 
-def _numbers(found: Measured) -> list[float]:
+def _numbers(measured: Measured) -> list[float]:
     """What is kept of a measured value: itself and, if it has replicates, their mean and spread."""
-    if found.replicates is None:
-        return [float(found.value)]
-    draws = np.asarray(found.replicates, dtype=float)
+    if measured.replicates is None:
+        return [float(measured.value)]
+    draws = np.asarray(measured.replicates, dtype=float)
     low, high = np.quantile(draws, _MIDDLE, method="nearest").tolist()
-    return [float(found.value), float(draws.mean()), low, high]
+    return [float(measured.value), float(draws.mean()), low, high]
 
 
 def _same(claim: Claim, kept: Sequence[float], now: Sequence[float]) -> bool:
@@ -117,10 +117,10 @@ def _main(arguments=None) -> int:
         print(_line(claim), flush=True)
     if options.write:
         path = results.FOLDER / f"{_NAME}.json"
-        kept = results.read(_NAME).get("claims", {}) if path.is_file() else {}
-        changes = _changes(measured, kept)
-        told = f"changed against what was kept: {len(changes)} of {len(measured)}"
-        print(told, *changes, sep="\n")
+        before = results.read(_NAME).get("claims", {}) if path.is_file() else {}
+        changes = _changes(measured, before)
+        heading = f"changed against what was kept: {len(changes)} of {len(measured)}"
+        print(heading, *changes, sep="\n")
         now = {claim.id: _entry(claim) for claim in measured}
         results.write_json(path, {"of results": results._digest(results.FOLDER), "claims": now})
     wrong = [claim.id for claim in judged if claim.judge() != claim.verdict]

@@ -19,17 +19,17 @@ def stated(name: str, holds, share: float = SURE) -> None:
     `tests/support/bound_words.yml` names the sentence; a test fails on words of direction or order
     about trained outcomes that no such check stands behind.
     """
-    found = np.asarray(holds)
-    if found.dtype != bool:
+    outcomes = np.asarray(holds)
+    if outcomes.dtype != bool:
         raise TypeError(f"holds must be true or false, got {holds!r}")
     if not 0.5 < share <= 1:
         raise ValueError(f"share must be over 0.5 and at most 1, got {share}")
-    if not found.size:
+    if not outcomes.size:
         raise ValueError("holds must not be empty")
-    if found.size == 1:
+    if outcomes.size == 1:
         share = 1.0
-    if found.mean() < share:
-        draws = f", true in {100 * found.mean():.0f} % of the draws" if found.size > 1 else ""
+    if outcomes.mean() < share:
+        draws = f", true in {100 * outcomes.mean():.0f} % of the draws" if outcomes.size > 1 else ""
         raise AssertionError(f"{name!r} is not so{draws}: a sentence of this page is not true")
 
 

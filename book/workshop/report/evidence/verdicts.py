@@ -25,7 +25,7 @@ import numpy as np
 from ddlib._check import integer, one_of
 
 # All verdicts. The first three are decided by bands, best first.
-_VERDICTS = (
+VERDICTS = (
     "reproduced",
     "qualitative",
     "not reproduced",
@@ -64,12 +64,12 @@ def bootstrap(
     integer("draws", draws, DRAWS)
     rng = np.random.default_rng(seed)
     drawn = _picked(cells, lambda n: rng.integers(0, n, (draws, n)), rng if nested else None)
-    found = np.asarray(statistic(*drawn))
-    if found.shape != (draws,):
+    values = np.asarray(statistic(*drawn))
+    if values.shape != (draws,):
         raise ValueError(
-            f"statistic must give one number for each of {draws} draws, got shape {found.shape}"
+            f"statistic must give one number for each of {draws} draws, got shape {values.shape}"
         )
-    return found
+    return values
 
 
 def _picked(cells, pick: Callable, rng=None) -> list:
@@ -122,12 +122,12 @@ def judged(
     return Measured(value, text(value) if callable(text) else text, replicates)
 
 
-def _largest_median(*cells) -> np.ndarray:
+def largest_median(*cells) -> np.ndarray:
     """The largest of the medians of some cells, one for each draw."""
     return np.max([median(cell) for cell in cells], axis=0)
 
 
-def _shares(verdicts) -> dict[str, float]:
+def shares_of_draws(verdicts) -> dict[str, float]:
     """Share of the draws in which each verdict comes out, the most frequent first."""
     names, counts = np.unique(verdicts, return_counts=True)
     order = np.argsort(-counts, kind="stable")
@@ -147,24 +147,24 @@ def share_told(share: float) -> str:
     return f"{100 * share:.0f} %"
 
 
-def _fresh(found: Mapping[str, float]) -> str:
+def verdict_of_shares(shares: Mapping[str, float]) -> str:
     """The verdict that shares of draws give by themselves; "undecided" if none is decided."""
-    best = max(found, key=found.get)
-    return best if found[best] >= DECIDED else "undecided"
+    best = max(shares, key=shares.get)
+    return best if shares[best] >= DECIDED else "undecided"
 
 
-def _stands(written: str, found: Mapping[str, float]) -> bool:
+def not_contradicted(written: str, shares: Mapping[str, float]) -> bool:
     """Whether shares of draws do not contradict a written verdict; see the module."""
-    one_of("written", written, _VERDICTS)
+    one_of("written", written, VERDICTS)
     if written == "undecided":
-        return max(found.values()) < _CONTRADICTS
-    return found.get(written, 0.0) >= STANDS
+        return max(shares.values()) < _CONTRADICTS
+    return shares.get(written, 0.0) >= STANDS
 
 
 def turns_at(values, shares, level: float) -> float:
     """Value of an assumed parameter at which a claim would turn, from a few that were tried."""
     order = np.argsort(shares)
-    tried, found = (np.log(np.asarray(x, dtype=float)[order]) for x in (values, shares))
-    if not found[0] <= np.log(level) <= found[-1]:
-        raise ValueError(f"shares must reach across {level:g}, got {np.exp(found)}")
-    return float(np.exp(np.interp(np.log(level), found, tried)))
+    log_values, log_shares = (np.log(np.asarray(x, dtype=float)[order]) for x in (values, shares))
+    if not log_shares[0] <= np.log(level) <= log_shares[-1]:
+        raise ValueError(f"shares must reach across {level:g}, got {np.exp(log_shares)}")
+    return float(np.exp(np.interp(np.log(level), log_shares, log_values)))

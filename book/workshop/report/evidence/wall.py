@@ -16,13 +16,13 @@ import numpy as np
 from ddlib.tables import significant, typeset
 from workshop.report.evidence.cards import LISTS, WORDS, worded
 from workshop.report.evidence.claims import (
-    _FILE,
-    _LEDGER,
-    _OWN,
+    CLAIMS_FILE,
+    LEDGER,
+    NOT_IN_PAPER,
     Claim,
-    _function,
-    _of_chapter,
-    _Printed,
+    Printed,
+    measuring_function,
+    of_chapter,
 )
 from workshop.report.evidence.expressions import find
 
@@ -61,7 +61,7 @@ class Tiles:
     """Claims to open: sentence and verdict outside; value, picture, bands and reasons inside."""
 
     claims: Iterable[Claim]
-    on: str = _LEDGER
+    on: str = LEDGER
 
     def __post_init__(self):
         object.__setattr__(self, "claims", tuple(self.claims))
@@ -72,7 +72,7 @@ class Tiles:
 
 def chapter_tiles(chapter: str) -> Tiles:
     """A chapter's "Paper and reproduction": its claims as `Tiles`."""
-    return Tiles(_of_chapter(chapter), chapter)
+    return Tiles(of_chapter(chapter), chapter)
 
 
 def _text(text: str) -> str:
@@ -82,10 +82,10 @@ def _text(text: str) -> str:
 def _tile(claim: Claim, on: str) -> str:
     verdict = claim.judge()
     changed = f'<span title="Band {_AFTER[claim.after]}">†</span>' if claim.after else ""
-    told = f"{mark(verdict)} <b>{worded(claim, verdict)}</b>{changed} {_text(claim.claim)}"
+    summary = f"{mark(verdict)} <b>{worded(claim, verdict)}</b>{changed} {_text(claim.claim)}"
     lines = [
         f'<details class="claim" id="claim-{claim.id}">',
-        f"<summary>{told}</summary>",
+        f"<summary>{summary}</summary>",
         "",
         *_body(claim, on),
         "",
@@ -96,12 +96,16 @@ def _tile(claim: Claim, on: str) -> str:
 
 def _body(claim: Claim, on: str) -> list[str]:
     """What is inside a tile, as Markdown."""
-    source = "This book's own claim" if claim.printed == _OWN else f"Printed: {claim.as_printed()}"
-    width, found = window(claim), claim.here()
-    known = width is None or str(width) in f"{claim.claim} {found}"
+    source = (
+        "This book's own claim"
+        if claim.printed == NOT_IN_PAPER
+        else f"Printed: {claim.as_printed()}"
+    )
+    width, ours = window(claim), claim.our_value()
+    known = width is None or str(width) in f"{claim.claim} {ours}"
     lines = [
         f"{typeset(source)} ({claim.where}). "
-        f"**Here: {typeset(found)}{'' if known else f' (window {width})'}**",
+        f"**Here: {typeset(ours)}{'' if known else f' (window {width})'}**",
         "",
     ]
     picture = _draws(claim)
@@ -109,7 +113,7 @@ def _body(claim: Claim, on: str) -> list[str]:
         lines += [picture, ""]
     judged = ""
     if claim.band:
-        judged = typeset(worded(claim, f"Judged: {claim.sure()} ({_bands(claim)}). "))
+        judged = typeset(worded(claim, f"Judged: {claim.verdict_with_share()} ({_bands(claim)}). "))
         judged += f"† The band was {_AFTER[claim.after]}. " if claim.after else ""
     head = _HEADS.get(claim.verdict, "What would have refuted it")
     lines += [f"{judged}{typeset(claim.why)}", "", f"*{head}:* {typeset(claim.refuted)}", ""]
@@ -119,10 +123,10 @@ def _body(claim: Claim, on: str) -> list[str]:
 
 def _links(claim: Claim, on: str) -> str:
     page, links = _page_of(claim), []
-    up = "" if on == _LEDGER else "../"  # evidence pages have a folder of their own
+    up = "" if on == LEDGER else "../"  # evidence pages have a folder of their own
     if page and claim.chapter != on:
         links.append(f"[chapter]({page})")
-    if on != _LEDGER:
+    if on != LEDGER:
         links.append(f'<a href="{up}ledger.html#claim-{claim.id}">in the ledger</a>')
     if claim.is_measured:
         links.append(f'<a href="{up}{_source(claim)}">code</a>')
@@ -131,7 +135,7 @@ def _links(claim: Claim, on: str) -> str:
 
 def _source(claim: Claim) -> str:
     """Address of the lines that measure a claim, from the page of a chapter."""
-    measure = inspect.unwrap(_function(claim.measure) if claim.measure else find)
+    measure = inspect.unwrap(measuring_function(claim.measure) if claim.measure else find)
     return f"{_CODE}/{measure.__module__.replace('.', '/')}.html#{measure.__name__}"
 
 
@@ -144,7 +148,7 @@ def _draws(claim: Claim) -> str:
         return ""
     low, median, high = np.quantile(np.asarray(replicates, float), _MIDDLE)
     band = _range(claim)
-    given = float(claim.printed) if isinstance(claim.printed, _Printed) else None
+    given = float(claim.printed) if isinstance(claim.printed, Printed) else None
     place, ends = _scale([low, high, *filter(np.isfinite, band), *([given] if given else [])])
     parts = [
         ("band", *map(place, band)),
@@ -153,7 +157,7 @@ def _draws(claim: Claim) -> str:
     ]
     if given is not None:
         parts.append(("printed", place(given)))
-    told = (
+    description = (
         f"95 % of the draws from {significant(low)} to {significant(high)}, median "
         f"{significant(median)}; {worded(claim, 'reproduced')} {_words(band)}"
         + (f"; printed {claim.printed.text}" if given is not None else "")
@@ -161,7 +165,7 @@ def _draws(claim: Claim) -> str:
     spans = "".join(_span(*part) for part in parts)
     left, right = (significant(end, 2) for end in ends)
     return (
-        f'<div class="claim-draws" role="img" aria-label="{html.escape(typeset(told))}">'
+        f'<div class="claim-draws" role="img" aria-label="{html.escape(typeset(description))}">'
         f"<small>{typeset(left)}</small><span>{spans}</span><small>{typeset(right)}</small></div>"
     )
 
@@ -205,7 +209,7 @@ def window(claim: Claim) -> int | None:
     """The window size that a claim is measured at; None if there is none or there are several."""
     if not claim.measure:
         return claim.arguments.get("width")
-    given = inspect.signature(_function(claim.measure)).bind(**claim.arguments)
+    given = inspect.signature(measuring_function(claim.measure)).bind(**claim.arguments)
     given.apply_defaults()
     return given.arguments.get("width")
 
@@ -215,8 +219,8 @@ def _bands(claim: Claim) -> str:
     if not claim.band:
         return "not judged"
     value = claim.measured().value
-    told = _number_beside(float(value), claim.edges())
-    shown = ("no", "yes")[bool(value)] if "is" in claim.band else told
+    number = _number_beside(float(value), claim.edges())
+    shown = ("no", "yes")[bool(value)] if "is" in claim.band else number
     best = "holds" if claim.verdict == "by construction" else "reproduced"
     text = f"{shown}; {best} {_bounds(claim.band)}"
     return f"{text}, qualitative {_bounds(claim.loose)}" if claim.loose else text
@@ -225,10 +229,10 @@ def _bands(claim: Claim) -> str:
 def _number_beside(value: float, edges: Iterable[float], digits: int = 2, most: int = 6) -> str:
     """A number with the digits (`most` of them) that show on which side of others it lies."""
     edges = np.array(list(edges), dtype=float)
-    for count in range(digits, most + 1):
-        shown = float(f"{value:.{count - 1}e}")
+    for places in range(digits, most + 1):
+        shown = float(f"{value:.{places - 1}e}")
         if (np.sign(shown - edges) == np.sign(value - edges)).all():
-            return significant(value, count)
+            return significant(value, places)
     return significant(value, most)
 
 
@@ -249,7 +253,9 @@ _BEHIND = {"whose-filters": "why-smooth-filters"}  # a lesson's evidence page of
 
 def home(claim: Claim) -> str:
     """The page of a claim's chapter, as ``{doc}`` takes it: a lesson, or evidence that has none."""
-    lesson = any((_FILE.parent / f"{claim.chapter}.{end}").is_file() for end in ("ipynb", "md"))
+    lesson = any(
+        (CLAIMS_FILE.parent / f"{claim.chapter}.{end}").is_file() for end in ("ipynb", "md")
+    )
     return claim.chapter if lesson else f"/book/evidence/{claim.chapter}"
 
 
@@ -257,4 +263,4 @@ def _page_of(claim: Claim) -> str:
     """The file of the page that deals with a claim, beside the others; empty if there is none."""
     behind = _BEHIND.get(claim.chapter, claim.chapter)
     names = (f"evidence/{behind}.ipynb", f"{claim.chapter}.ipynb", f"{claim.chapter}.md")
-    return next((name for name in names if (_FILE.parent / name).is_file()), "")
+    return next((name for name in names if (CLAIMS_FILE.parent / name).is_file()), "")

@@ -26,14 +26,14 @@ def row(where: int | str = 21) -> dict:
     return results.read("filter-trial")["windows"][str(where)]
 
 
-def matched(found: dict) -> dict:
+def matched(entry: dict) -> dict:
     """The nulls of a row that are as smooth as the torques."""
-    return {kind: null for kind, null in found["nulls"].items() if kind in MATCHED}
+    return {kind: null for kind, null in entry["nulls"].items() if kind in MATCHED}
 
 
-def share(found: dict, layer: str, names: Sequence[str], kind: str = "classes") -> np.ndarray:
+def share(entry: dict, layer: str, names: Sequence[str], kind: str = "classes") -> np.ndarray:
     """Share of a layer's filters in any of some classes, one for each network or draw."""
-    return np.sum([found[layer][kind][name] for name in names], axis=0)
+    return np.sum([entry[layer][kind][name] for name in names], axis=0)
 
 
 # Gains of a network that the arm has, too: output, joint, order of the derivative
@@ -52,11 +52,11 @@ def arm_gains(setup: str = JOINT_DAMPING.name) -> np.ndarray:
     No stiffness; the slope of the friction torque with the velocity, by least squares over the
     training cases; the mean mass matrix. Coulomb friction adds to the slope.
     """
-    made = SETUPS[setup]
-    states = true_states(committed.training(setup), made).reshape(-1, 2, 3)
+    reading = SETUPS[setup]
+    states = true_states(committed.training(setup), reading).reshape(-1, 2, 3)
     speed = states[..., 1]
-    slope = np.linalg.lstsq(speed, made.effects.friction_torque(speed), rcond=None)[0].T
-    inertia = made.arm.mass_matrix(states[..., 0]).mean(0)
+    slope = np.linalg.lstsq(speed, reading.effects.friction_torque(speed), rcond=None)[0].T
+    inertia = reading.arm.mass_matrix(states[..., 0]).mean(0)
     return np.stack([np.zeros((2, 2)), slope, inertia], -1)
 
 
@@ -65,26 +65,26 @@ def calibrated(what: str = "inertia", width: int = 21, path: str = "gains") -> M
 
     Of the whole network, `path` "gains", or through the direct weights alone, "gains, direct".
     """
-    found = row(width)
-    real, true, told = _entries(what, np.array(found["real"][path]), arm_gains())
-    nulls = (_entries(what, np.array(x[path]), arm_gains())[0] for x in matched(found).values())
+    entry = row(width)
+    real, true, compared = _entries(what, np.array(entry["real"][path]), arm_gains())
+    nulls = (_entries(what, np.array(x[path]), arm_gains())[0] for x in matched(entry).values())
     chance = max(near_by_chance(null, real, true) for null in nulls)
-    text = f"{told} {_UNITS[what]}; as near by chance: p {chance:.2f}"
+    text = f"{compared} {_UNITS[what]}; as near by chance: p {chance:.2f}"
     return judged(lambda each: _off(each, true), real, text=text)
 
 
 def off_singly(what: str = "inertia", width: int = 21) -> np.ndarray:
     """The same of each network by itself: how far its worst entry is from the arm's."""
-    found, true, _ = _entries(what, np.array(row(width)["real"]["gains"]), arm_gains())
-    return np.abs(found / true - 1).max(-1)
+    entries, true, _ = _entries(what, np.array(row(width)["real"]["gains"]), arm_gains())
+    return np.abs(entries / true - 1).max(-1)
 
 
 def calibrated_networks(width: int = 21, setup: str = JOINT_DAMPING.name) -> Measured:
     """How far the inertia in the networks of Table 4-1 is from the arm's: the worst entry."""
     windows, _ = cases(committed.training(setup), width)
-    found = gains_of(committed.networks(width, setup), windows, LOG_STEP).whole
-    real, true, told = _entries("inertia", found, arm_gains(setup))
-    return judged(lambda each: _off(each, true), real, text=f"{told} {_UNITS['inertia']}")
+    gains = gains_of(committed.networks(width, setup), windows, LOG_STEP).whole
+    real, true, compared = _entries("inertia", gains, arm_gains(setup))
+    return judged(lambda each: _off(each, true), real, text=f"{compared} {_UNITS['inertia']}")
 
 
 def response(width: int = 21) -> Measured:
@@ -92,8 +92,8 @@ def response(width: int = 21) -> Measured:
 
     At the shoulder, along the worst of three trajectories; see the study `filter_responses`.
     """
-    found = results.read("filter-responses")
-    numbers, (cell, own) = found["trajectories"], responses(width)
+    study = results.read("filter-responses")
+    numbers, (cell, own) = study["trajectories"], responses(width)
     pairs = list(zip(numbers, np.median(cell["network"], 0), own))
     text = ", ".join(f"{one:.1f} on trajectory {k} (arm {arm:.1f})" for k, one, arm in pairs)
     filters = ", ".join(f"{one:.1f}" for one in np.median(cell["filter"], 0))
@@ -106,18 +106,18 @@ def responses(width: int = 21, motion: str = "slow") -> tuple[dict, np.ndarray]:
 
     Along the motion as it was "recorded", swings included, or a "slow" sine as it was desired.
     """
-    found = results.read("filter-responses")[motion]
-    cell = {way: np.array(each) for way, each in found["windows"][str(width)].items()}
-    return cell, np.array(found["arm"])
+    study = results.read("filter-responses")[motion]
+    cell = {way: np.array(each) for way, each in study["windows"][str(width)].items()}
+    return cell, np.array(study["arm"])
 
 
 def _entries(what, gains, wanted) -> tuple[np.ndarray, np.ndarray, str]:
     """Gains ``(networks, entries)``, the arm's own, and both in words."""
     names, places = zip(*ENTRIES[what].items())
-    found = np.stack([gains[(slice(None), *at)] for at in places], -1)
+    entries = np.stack([gains[(slice(None), *at)] for at in places], -1)
     true = np.array([wanted[at] for at in places])
-    told = zip(names, np.median(found, 0), true)
-    return found, true, ", ".join(f"{n} {m:.2f} (arm {t:.2f})" for n, m, t in told)
+    medians = zip(names, np.median(entries, 0), true)
+    return entries, true, ", ".join(f"{n} {m:.2f} (arm {t:.2f})" for n, m, t in medians)
 
 
 def _off(gains, true) -> np.ndarray:

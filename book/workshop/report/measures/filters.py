@@ -21,15 +21,17 @@ from ddlib.metrics import rmss
 from ddlib.setups import STATE_FEEDBACK, WINDOWS, predict, true_states
 from ddlib.tables import scientific, significant, spread
 from workshop.report import committed
-from workshop.report._probes import zero_crossings
-from workshop.report.evidence.verdicts import Measured, _largest_median, judged, mean, median
+from workshop.report.evidence.verdicts import Measured, judged, largest_median, mean, median
+from workshop.report.probes import zero_crossings
 
 
 def _made(
     of: Callable, layer: str, widths: Sequence = WINDOWS, setup: str = STATE_FEEDBACK.name
 ) -> list[tuple]:
     """What a function makes of filters, a cell for each window; and the same before training."""
-    return list(zip(*([of(f) for f in committed._filters(w, layer, setup)] for w in widths)))
+    return list(
+        zip(*([of(f) for f in committed.filters_of_layer(w, layer, setup)] for w in widths))
+    )
 
 
 def of_class(
@@ -76,8 +78,8 @@ def not_analysable(wide: int = 41, narrow: int = 21) -> Measured:
 
 def untrained(width: int = 41) -> Measured:
     """Share of random weight functions that the rule calls not analysable."""
-    found = classify(Weights.random(25, width).hidden_weights.reshape(-1, width))
-    rough = found == "not analysable"
+    names = classify(Weights.random(25, width).hidden_weights.reshape(-1, width))
+    rough = names == "not analysable"
     return Measured(float(rough.mean()), f"{rough.sum()} of {rough.size} random functions")
 
 
@@ -101,7 +103,7 @@ def constant_share(
 def asymmetric(width: int = 21, shift: float = 0.5, setup: str = STATE_FEEDBACK.name) -> Measured:
     """Share of direct filters with two zero crossings whose middle is `shift` samples off."""
     (two, off), (before, _) = (
-        zero_crossings(f, shift) for f in committed._filters(width, "direct", setup)
+        zero_crossings(f, shift) for f in committed.filters_of_layer(width, "direct", setup)
     )
 
     def share(pair):
@@ -135,12 +137,12 @@ def direct_smoothness(setup: str = STATE_FEEDBACK.name) -> Measured:
     """Largest median roughness of the direct weights over the windows (white noise: 1)."""
     cells, before = _made(roughness, "direct", setup=setup)
     now, then = (", ".join(significant(np.median(x), 2) for x in xs) for xs in (cells, before))
-    return judged(_largest_median, *cells, text=f"roughness {now}; before training {then}")
+    return judged(largest_median, *cells, text=f"roughness {now}; before training {then}")
 
 
 def changed_roughness(width: int = 41, setup: str = STATE_FEEDBACK.name) -> Measured:
     """Roughness of what training adds to the initial weights of the hidden units."""
-    trained, before = committed._filters(width, "hidden", setup)
+    trained, before = committed.filters_of_layer(width, "hidden", setup)
     change = roughness(trained - before)
     text = f"{spread(change)}; the filters have {spread(roughness(trained))}"
     return judged(median, change, text=text)
@@ -148,7 +150,7 @@ def changed_roughness(width: int = 41, setup: str = STATE_FEEDBACK.name) -> Meas
 
 def parts_sum_up() -> Measured:
     """Largest difference between a filter and the sum of its parts as the paper prints them."""
-    f = committed._filters(21, "hidden")[0].reshape(-1, 21)
+    f = committed.filters_of_layer(21, "hidden")[0].reshape(-1, 21)
     gap = max(np.abs(decompose(f, c).sum() - f).max() for c in ("paper", "symmetric"))
     odd = decompose(f, "paper").odd
     skew = float(np.median(np.abs(odd + odd[:, ::-1]).max(-1) / np.abs(odd).max(-1)))

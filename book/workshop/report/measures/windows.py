@@ -32,7 +32,7 @@ from workshop.report.evidence.verdicts import (
     median,
     turns_at,
 )
-from workshop.report.studies._windows import _acceleration_error
+from workshop.report.studies.windows import acceleration_error
 
 
 def estimates(
@@ -62,15 +62,15 @@ def estimates(
     return Measured(max(errors[k][0] for k in orders), f"relative error {', '.join(shown)}")
 
 
-def _missed(found, exact) -> float:
-    return float(np.sqrt(((found - exact) ** 2).mean() / exact.var(0).mean()))
+def _missed(predicted, exact) -> float:
+    return float(np.sqrt(((predicted - exact) ** 2).mean() / exact.var(0).mean()))
 
 
 def multiplications(width: int = 21) -> Measured:
     """Weights of a network times the cases of an epoch."""
     cases = len(paper.TRAINING_TRAJECTORIES) * paper.SAMPLES_PER_TRAJECTORY
-    count = Weights.random(1, width)[0].count() * cases
-    return Measured(float(count), f"{count:,} at window {width}")
+    products = Weights.random(1, width)[0].count() * cases
+    return Measured(float(products), f"{products:,} at window {width}")
 
 
 def weights_against_nwh(widths: Sequence[int] = WINDOWS, many: int = 10) -> Measured:
@@ -83,14 +83,14 @@ def weights_against_nwh(widths: Sequence[int] = WINDOWS, many: int = 10) -> Meas
         return Weights.random(1, width, hidden)[0].count(), 2 * width * hidden
 
     most = {w: against(w, 2 * many) for w in widths}
-    ratios = [count / product for count, product in most.values()]
-    told = (
+    ratios = [weights / product for weights, product in most.values()]
+    comparisons = (
         f"with {hidden} hidden units "
         + ", ".join("{} for {} at {}".format(*against(w, hidden), w) for w in widths)
         for hidden in (2 * many, paper.HIDDEN_UNITS)
     )
     worst = max(ratios, key=lambda r: abs(np.log(r)))
-    return Measured(worst, f"weights for n w h: {'; '.join(told)}")
+    return Measured(worst, f"weights for n w h: {'; '.join(comparisons)}")
 
 
 def paths(width: int = 11) -> Measured:
@@ -181,9 +181,9 @@ def training_is_monotone(other: int = 2) -> Measured:
 
 def rises_again(factor: float = 1.05, setup: str = STATE_FEEDBACK.name) -> Measured:
     """Share of networks whose last test error is well above their best one."""
-    table = results.read("table-4-1")["setups"][setup]
+    cells = results.read("table-4-1")["setups"][setup]
     worse = {
-        w: np.array(table[str(w)]["errors"]["test"]) > factor * np.array(table[str(w)]["best test"])
+        w: np.array(cells[str(w)]["errors"]["test"]) > factor * np.array(cells[str(w)]["best test"])
         for w in WINDOWS
     }
     text = ", ".join(f"{x.sum()} of {x.size} at {w}" for w, x in worse.items())
@@ -194,8 +194,8 @@ def magnitudes(
     narrow: int = 21, wide: int = 41, beside_filters: bool = False, setup: str = STATE_FEEDBACK.name
 ) -> Measured:
     """Largest weight of a wide window over a narrow one's; beside it least-squares taps."""
-    table = results.read("table-4-1")["setups"][setup]
-    cells = [np.array(table[str(w)]["largest weight"]) for w in (wide, narrow)]
+    by_width = results.read("table-4-1")["setups"][setup]
+    cells = [np.array(by_width[str(w)]["largest weight"]) for w in (wide, narrow)]
     taps = [np.abs(savitzky_golay(w, 2, LOG_STEP, degree=2)).max() for w in (wide, narrow)]
     fall = taps[0] / taps[1]
     unit = fall if beside_filters else 1.0
@@ -224,8 +224,8 @@ def halved(first: list, then: list) -> Measured:
     cell, ratios = _learning(21, 0), {}
     for who in ("measured", "predicted"):
         halves = np.log(np.array(cell[who]["halves"], float))
-        early, late = (halves[:, np.array(group) - 1].mean(1) for group in (first, then))
-        ratios[who] = np.exp(late - early)
+        half_first, half_then = (halves[:, np.array(group) - 1].mean(1) for group in (first, then))
+        ratios[who] = np.exp(half_then - half_first)
     text = f"{spread(ratios['measured'])}; predicted {spread(ratios['predicted'])}"
     return judged(median, ratios["measured"], text=text)
 
@@ -277,9 +277,9 @@ def noise_left(width: int = 41) -> Measured:
     """Correlation of trained with initial weights in directions predicted not to be learnt."""
     cell = _learning(width, 0)
     learnt, every = int(np.median(cell["predicted"]["learnt"])), len(cell["variance"])
-    found = np.array(cell["start kept"])
-    text = f"{spread(found)} in {every - learnt} of {every} directions"
-    return judged(median, found, text=text)
+    correlation = np.array(cell["start kept"])
+    text = f"{spread(correlation)} in {every - learnt} of {every} directions"
+    return judged(median, correlation, text=text)
 
 
 def memorised(width: int = 41, days: int = 5, setup: str = STATE_FEEDBACK.name) -> Measured:
@@ -287,14 +287,16 @@ def memorised(width: int = 41, days: int = 5, setup: str = STATE_FEEDBACK.name) 
 
     On other days noise and the encoders' zero differ, motions and arm do not.
     """
-    training, told = committed.training(setup), []
+    training, ratios = committed.training(setup), []
     anew = [split(SETUPS[setup].repeated(1 + k).record())[0] for k in range(days)]
     for size in (width, 21):
         model = committed.networks(size, setup)
         errors = [rmss(model.torque(x), y) for x, y in (cases(r, size) for r in (training, *anew))]
-        told.append(np.array(errors[1:]).T / errors[0][:, None])
-    text = f"{spread(told[0], 3)} times the training error; {significant(np.median(told[1]), 3)}"
-    return judged(median, told[0], text=f"{text} at 21")
+        ratios.append(np.array(errors[1:]).T / errors[0][:, None])
+    text = (
+        f"{spread(ratios[0], 3)} times the training error; {significant(np.median(ratios[1]), 3)}"
+    )
+    return judged(median, ratios[0], text=f"{text} at 21")
 
 
 def short_window(bits: tuple = (16, 15, 14, 13, 12, 11), more: float = 1.1) -> Measured:
@@ -307,7 +309,7 @@ def short_window(bits: tuple = (16, 15, 14, 13, 12, 11), more: float = 1.1) -> M
         rounded = Quantisation(2 * np.pi / 2**each)
         effects = replace(STATE_FEEDBACK.effects, encoder=(rounded,))
         run = split(replace(STATE_FEEDBACK, effects=effects).record())[0]
-        ratios.append(_acceleration_error(run, 11) / _acceleration_error(run, 21))
+        ratios.append(acceleration_error(run, 11) / acceleration_error(run, 21))
     turn = turns_at([2.0**-each for each in bits], ratios, more)
     text = f"{significant(ratios[0], 2)} times the error at 21 with the assumed {bits[0]} bits"
     text += f"; {significant(more, 2)} times with {-np.log2(turn):.1f} bits"

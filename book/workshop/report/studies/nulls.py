@@ -33,7 +33,8 @@ from ddlib.learning import (
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, Setup, split, true_states
 from ddlib.simulation import LOG_STEP, Recording
-from workshop.report._probes import (
+from workshop.report.code_hash import study
+from workshop.report.probes import (
     cancellation,
     decoded,
     decoded_sign,
@@ -41,8 +42,7 @@ from workshop.report._probes import (
     with_filters,
     with_jerk,
 )
-from workshop.report.code_hash import study
-from workshop.report.two_harmonics import _record_circle, _record_quintic, record_two_harmonics
+from workshop.report.two_harmonics import record_circle, record_quintic, record_two_harmonics
 
 _EPOCHS = 4000  # Epochs of the trial, for real and surrogate torques alike
 
@@ -63,7 +63,7 @@ _WAITS = {11: 12_000}  # epochs of a window that rests on a plateau for about 3,
 _STARTS = 1000  # seed of the first null network: none shares its start with a real one
 
 
-class _Trial:
+class FilterTrial:
     """One recording and window size: its cases, and what networks make of them."""
 
     def __init__(self, setup: Setup, recording: Recording, width: int):
@@ -79,19 +79,19 @@ class _Trial:
 
     def train(self, targets, seed: int) -> tuple[Weights, Weights]:
         """Networks of one target each, ``(members, runs, time, joint)`` N m: trained, untrained."""
-        setup, count = self.setup, len(targets)
-        scaled = self.data.outputs.scale(targets.reshape(count, -1, 2))
-        start = Weights.random(count, self.width, setup.hidden, initial=setup.initial, seed=seed)
+        setup, networks = self.setup, len(targets)
+        scaled = self.data.outputs.scale(targets.reshape(networks, -1, 2))
+        start = Weights.random(networks, self.width, setup.hidden, initial=setup.initial, seed=seed)
         label = f"{setup.name}, window {self.width}"
         if setup.steps:
-            found = [
+            weights = [
                 learning.solve(
                     start[k : k + 1], replace(self.data, y=scaled[k]), steps=setup.steps,
                     decay=setup.decay, label=label,
                 ).model.weights
-                for k in range(count)
+                for k in range(networks)
             ]  # fmt: skip
-            return Weights.concatenate(found), start
+            return Weights.concatenate(weights), start
         model, *_ = learning.train_ensemble(
             start, self.data, targets=scaled, rate=setup.rate / self.width,
             momentum=setup.momentum, warm_up=setup.warm_up, epochs=setup.epochs, label=label,
@@ -99,30 +99,31 @@ class _Trial:
         return model.weights, start
 
     def model(self, weights: Weights) -> TorqueModel:
+        """Weights as a model of the trial's windows and torques."""
         return TorqueModel(weights, self.data.inputs, self.data.outputs, LOG_STEP)
 
     def described(self, weights: Weights, start: Weights, targets) -> dict:
         """What is counted and measured on networks, one value or array for each of them."""
         model = self.model(weights)
         wanted = targets.reshape(len(targets), -1, 2)
-        found: dict = {"error": rmss(model.torque(self.windows), wanted)}
+        row: dict = {"error": rmss(model.torque(self.windows), wanted)}
         hidden = weights.activity(self.data.x)[0]
         held = weights.activity(model.scaled(self.test_windows))[0]
         inputs = unit_inputs(model, self.windows)
         for layer, attribute in LAYERS.items():
             f, before = getattr(weights, attribute), getattr(start, attribute)
-            found[layer] = {"classes": _counted(f), **_responded(inputs[layer], self.states)}
-            moved = (np.abs(f - before) > 1e-9).any()
-            found[layer]["changes"] = _counted(f - before) if moved else _counted(f)
-            found[layer]["roughness"] = np.median(roughness(f), (1, 2))
-        found["saturated"] = np.median(saturated(hidden), -1)
-        found["cancelled"] = cancellation(model, self.windows).mean(-1)
-        found["transition"] = np.median(transition_width(inputs["hidden"]), -1)
+            row[layer] = {"classes": names_counted(f), **_responded(inputs[layer], self.states)}
+            changed = (np.abs(f - before) > 1e-9).any()
+            row[layer]["changes"] = names_counted(f - before) if changed else names_counted(f)
+            row[layer]["roughness"] = np.median(roughness(f), (1, 2))
+        row["saturated"] = np.median(saturated(hidden), -1)
+        row["cancelled"] = cancellation(model, self.windows).mean(-1)
+        row["transition"] = np.median(transition_width(inputs["hidden"]), -1)
         gained = calibrated(model, self.windows, LOG_STEP)
-        found |= {"gains, direct": gained.direct, "gains": gained.whole}
-        found |= self._probed(hidden, held)
-        found["refitted"] = np.array([self.refit(h, t) for h, t in zip(hidden, held)])
-        return found
+        row |= {"gains, direct": gained.direct, "gains": gained.whole}
+        row |= self._probed(hidden, held)
+        row["refitted"] = np.array([self.refit(h, t) for h, t in zip(hidden, held)])
+        return row
 
     def _probed(self, hidden, held) -> dict:
         target = self.states[..., 1:3].reshape(len(self.states), -1)
@@ -162,19 +163,20 @@ class _Trial:
         }
 
 
-def _counted(f) -> dict:
+def names_counted(f) -> dict:
+    """Share of each name among the filters of each network."""
     names = classify(f)
     return {name: (names == name).mean((1, 2)) for name in CLASSES}
 
 
 def _responded(inputs, states) -> dict:
     """Medians over the units of a network of what they follow, and how many follow what best."""
-    found = heard(inputs, states)
-    best = found.strongest
+    responses = heard(inputs, states)
+    best = responses.strongest
     return {
-        "alone": np.median(found.alone, 1),
-        "unique": np.median(found.unique, 1),
-        "together": np.median(found.together, 1),
+        "alone": np.median(responses.alone, 1),
+        "unique": np.median(responses.unique, 1),
+        "together": np.median(responses.together, 1),
         "strongest": np.stack([(best == k).mean(1) for k in range(states.shape[-1])], -1),
     }
 
@@ -186,23 +188,25 @@ def _mean(found, draws: int):
     return found.reshape(draws, -1, *found.shape[1:]).mean(1)
 
 
-def _nulls(trial: _Trial, kinds, draws: int, each: int) -> tuple[dict, dict]:
+def _nulls(trial: FilterTrial, kinds, draws: int, each: int) -> tuple[dict, dict]:
     """Networks of each kind of surrogate, `each` for a draw: means by draw, and the weights."""
-    found, kept = {}, {}
+    by_kind, networks = {}, {}
     for number, kind in enumerate(kinds):
         drawn = surrogates(kind, trial.torques, draws, seed=100 * number)
         targets = np.repeat(drawn, each, 0)
         weights, start = trial.train(targets, _STARTS * (number + 1))
-        found[kind] = _mean(trial.described(weights, start, targets), draws)
-        found[kind]["related"] = np.array([related(d.reshape(-1, 2), trial.windows) for d in drawn])
-        kept[kind] = weights[::each]
-    return found, kept
+        by_kind[kind] = _mean(trial.described(weights, start, targets), draws)
+        by_kind[kind]["related"] = np.array(
+            [related(d.reshape(-1, 2), trial.windows) for d in drawn]
+        )
+        networks[kind] = weights[::each]
+    return by_kind, networks
 
 
 def _row(setup: Setup, recording: Recording, width: int, members: int, draws: int, each: int,
          kinds=MATCHED, more: bool = False) -> dict:  # fmt: skip
     """Real torques, no training, and surrogates, on one recording and window size."""
-    trial = _Trial(setup, recording, width)
+    trial = FilterTrial(setup, recording, width)
     targets = np.repeat(trial.torques[None], members, 0)
     weights, start = trial.train(targets, 0)
     row = {
@@ -210,16 +214,16 @@ def _row(setup: Setup, recording: Recording, width: int, members: int, draws: in
         "real, errors": trial.errors(trial.model(weights)),
         "untrained": _mean(trial.described(start, start, targets), min(members, 5)),
     }
-    row["nulls"], kept = _nulls(trial, kinds, draws, each)
+    row["nulls"], networks = _nulls(trial, kinds, draws, each)
     if more:
         white, _ = _nulls(trial, ("shuffled",), 5, members // 5)
         row["nulls"] |= white
-        row["interventions"] = _intervened(trial, weights, start, kept)
-        row["other motions"] = _elsewhere(trial, {"real": weights, "untrained": start, **kept})
+        row["interventions"] = _intervened(trial, weights, start, networks)
+        row["other motions"] = _elsewhere(trial, {"real": weights, "untrained": start, **networks})
     return row
 
 
-def _intervened(trial: _Trial, weights: Weights, start: Weights, nulls: dict) -> dict:
+def _intervened(trial: FilterTrial, weights: Weights, start: Weights, nulls: dict) -> dict:
     f = weights.hidden_weights
     others = {kind: kept.hidden_weights for kind, kept in nulls.items()}
     cycled = {k: x[np.arange(len(f)) % len(x)] for k, x in others.items()}
@@ -241,24 +245,24 @@ def _intervened(trial: _Trial, weights: Weights, start: Weights, nulls: dict) ->
     }
 
 
-def _elsewhere(trial: _Trial, networks: dict) -> dict:
+def _elsewhere(trial: FilterTrial, networks: dict) -> dict:
     """What the same units follow on motions whose acceleration is not their position."""
     setup = trial.setup
     motions = {
         "two sines": split(record_two_harmonics(setup))[0],
-        "quintic": _record_quintic(setup),
-        "circle": _record_circle(setup),
+        "quintic": record_quintic(setup),
+        "circle": record_circle(setup),
     }
-    found: dict = {}
+    by_name: dict = {}
     for name, motion in motions.items():
         windows = cases(motion, trial.width)[0]
         states = with_jerk(true_states(motion, setup)).reshape(-1, 2, 4)
-        found[name] = {}
+        by_name[name] = {}
         for kind, weights in networks.items():
             inputs = unit_inputs(trial.model(weights), windows)
-            told = {layer: _responded(inputs[layer], states) for layer in LAYERS}
-            found[name][kind] = {layer: _mean(x, 5) for layer, x in told.items()}
-    return found
+            responses = {layer: _responded(inputs[layer], states) for layer in LAYERS}
+            by_name[name][kind] = {layer: _mean(x, 5) for layer, x in responses.items()}
+    return by_name
 
 
 @study
@@ -297,11 +301,11 @@ def _filter_trial_elsewhere(
         "window 31": (TRIAL, TRIAL.record(), 31),
         "state feedback": (old, old.record(), width),
     }
-    found = {name: _row(*row, members, draws, each, kinds) for name, row in rows.items()}
+    results = {name: _row(*row, members, draws, each, kinds) for name, row in rows.items()}
     slow = {"longer": replace(TRIAL, epochs=_LONGER), "solver": JOINT_DAMPING}
     for name, setup in slow.items():
-        found[name] = _row(setup, setup.record(), width, members // 2, draws // 2, 1, ("phases",))
-    return {"members": members, "draws": draws, "each": each, "longer": _LONGER, "rows": found}
+        results[name] = _row(setup, setup.record(), width, members // 2, draws // 2, 1, ("phases",))
+    return {"members": members, "draws": draws, "each": each, "longer": _LONGER, "rows": results}
 
 
 _SLOW = (1, 2, 6)  # Trajectories that move the shoulder by more than 30 degrees
@@ -331,13 +335,13 @@ def _filter_responses(members: int = 15) -> dict:
         "recorded": (recording.q, true_states(recording, TRIAL), slice(None)),
         "slow": (recording.reference.q, desired, slice(margin, -margin)),
     }
-    found: dict = {name: {"arm": [], "windows": {}} for name in motions}
+    by_motion: dict = {name: {"arm": [], "windows": {}} for name in motions}
     for name, (_, states, inside) in motions.items():
         for k in chosen:
             torque = TRIAL.arm.inverse_dynamics(*np.moveaxis(states[k], -1, 0))[:, 0]
-            found[name]["arm"].append(_response(torque[inside], states[k, inside, 0]))
+            by_motion[name]["arm"].append(_response(torque[inside], states[k, inside, 0]))
     for width in WINDOWS:
-        trial = _Trial(_as_long_as(width), recording, width)
+        trial = FilterTrial(_as_long_as(width), recording, width)
         weights, _ = trial.train(np.repeat(trial.torques[None], members, 0), 0)
         model = trial.model(weights)
         filters = mean_gradient(model, trial.windows)[:, 0]
@@ -348,10 +352,10 @@ def _filter_responses(members: int = 15) -> dict:
                 linear = np.einsum("mjw,njw->mn", filters, windows)
                 for way, torque in (("network", model.torque(windows)[..., 0]), ("filter", linear)):
                     cell[way].append(_response(torque[:, inside], states[k, inside, 0]))
-            found[name]["windows"][str(width)] = {
+            by_motion[name]["windows"][str(width)] = {
                 way: np.stack(each, -1) for way, each in cell.items()
             }
-    return {"members": members, "trajectories": _SLOW, **found}
+    return {"members": members, "trajectories": _SLOW, **by_motion}
 
 
 @study
@@ -365,7 +369,7 @@ def _null_controls(
     gradient is kept, in the measure of `ddlib.learning.solve`, with how each network ended. The
     error alone has no end within reach: its row is what `few` steps give.
     """
-    trial = _Trial(TRIAL, TRIAL.record(), 21)
+    trial = FilterTrial(TRIAL, TRIAL.record(), 21)
     targets = np.repeat(trial.torques[None], members, 0)
     test = trial.data.transform(trial.test_windows, trial.answer)
 
@@ -376,13 +380,13 @@ def _null_controls(
             "test": errors[:, 1],
             "largest weight": weights.largest,
             "roughness, hidden": np.median(roughness(weights.hidden_weights), (-2, -1)),
-            "classes": _counted(weights.hidden_weights),
-            "direct": _counted(weights.direct_weights),
+            "classes": names_counted(weights.hidden_weights),
+            "direct": names_counted(weights.direct_weights),
         }
 
     rows = []
     for initial in (0.03, 0.3, 1.0):
-        other = _Trial(replace(TRIAL, initial=initial), TRIAL.record(), 21)
+        other = FilterTrial(replace(TRIAL, initial=initial), TRIAL.record(), 21)
         weights, _ = other.train(targets, 0)
         rows.append({"kind": "descent", "initial": initial, **row(weights)})
     for penalty in ({"decay": 1e-5}, {"decay": 1e-3}, {}):

@@ -24,7 +24,7 @@ from ddlib.effects import (
 from ddlib.setups import JOINT_DAMPING, KP, WINDOWS, Setup, train_windows
 from ddlib.simulation import Recording
 from workshop.report.code_hash import code_hash, study
-from workshop.report.studies._table import _row
+from workshop.report.studies.table import errors_and_weights
 from workshop.report.sweeps import _sweep
 
 # Initial weights tried for a network at most: one that derails is begun anew, as anyone would
@@ -122,7 +122,7 @@ def _setup(values: Mapping[str, float], method: str) -> Setup:
         encoder=(Quantisation(2 * np.pi / 2 ** values["encoder bits"]),),
         torque_sensor=(Noise(times("torque noise", default.torque_sensor[0].std)),),
     )
-    made = replace(
+    setup = replace(
         JOINT_DAMPING,
         name=method,
         controller=proportional(times("position gain", KP)),
@@ -130,9 +130,9 @@ def _setup(values: Mapping[str, float], method: str) -> Setup:
         scaling=(float(values["lowest input"]), 1.0),
     )
     if method == "solver":
-        return replace(made, decay=float(values["decay"]), steps=round(values["steps"]))
+        return replace(setup, decay=float(values["decay"]), steps=round(values["steps"]))
     return replace(
-        made,
+        setup,
         steps=0,
         decay=0.0,
         momentum=1 - 1 / float(values["momentum"]),
@@ -143,9 +143,9 @@ def _setup(values: Mapping[str, float], method: str) -> Setup:
 
 def _without_start(recording: Recording, seconds: float) -> Recording:
     """A recording whose motion begins `seconds` later: less of the start transient."""
-    late = number("seconds", seconds, 0.0, 2.0)
+    delay = number("seconds", seconds, 0.0, 2.0)
     begin, end = recording.span
-    return replace(recording, t=recording.t - late, duration=end - begin - late)
+    return replace(recording, t=recording.t - delay, duration=end - begin - delay)
 
 
 def _run(method: str, places: list, seeds: list) -> dict:
@@ -163,7 +163,7 @@ def _run(method: str, places: list, seeds: list) -> dict:
                 derailed += bool(history.derailed[0])
                 if not history.derailed[0]:
                     break
-            rows[-1][width] = _row(model, history, recording)
+            rows[-1][width] = errors_and_weights(model, history, recording)
     cells = {
         str(w): {name: [float(one[w][name][0]) for one in rows] for name in rows[0][w]}
         for w in WINDOWS

@@ -36,8 +36,8 @@ from ddlib.analysis import (
 from ddlib.learning import TorqueModel, TrainingSet, Weights, cases, surrogates
 from ddlib.setups import SETUPS, WINDOWS, Setup, errors, split, train_windows
 from ddlib.simulation import LOG_STEP
-from workshop.report._probes import cancellation, zero_crossings
 from workshop.report.code_hash import code_hash, study
+from workshop.report.probes import cancellation, zero_crossings
 from workshop.report.sweeps import _sweep
 
 RANGES = (0.01, 0.03, 0.1, 0.3, 1.0)
@@ -139,21 +139,21 @@ def described(model: TorqueModel, start: Weights, recording, setup: Setup) -> di
     """
     width, weights = model.weights.width, model.weights
     windows, _ = cases(split(recording)[0], width)
-    found: dict = errors(model, recording).named()
-    found["largest weight"] = weights.largest
+    row: dict = errors(model, recording).named()
+    row["largest weight"] = weights.largest
     for layer, attribute in LAYERS.items():
-        found[layer] = _shapes(getattr(weights, attribute))
+        row[layer] = _shapes(getattr(weights, attribute))
     hidden = weights.activity(model.scaled(windows))[0]
-    found["saturated"] = np.median(saturated(hidden), -1)
-    found["cancelled"] = cancellation(model, windows).mean(-1)
+    row["saturated"] = np.median(saturated(hidden), -1)
+    row["cancelled"] = cancellation(model, windows).mean(-1)
     inertia = gains(mean_gradient(model, windows), LOG_STEP)[..., 2]
-    found["M11"], found["M22"] = inertia[..., 0, 0], inertia[..., 1, 1]
-    found["turn"] = np.median(_turn(weights, start), -1)
+    row["M11"], row["M22"] = inertia[..., 0, 0], inertia[..., 1, 1]
+    row["turn"] = np.median(_turn(weights, start), -1)
     every = np.linspace(0, len(windows) - 1, 100).round().astype(int)
     x = model.scaled(windows[every])
     pairs = ((start[k], weights[k]) for k in range(len(weights)))
-    found["kernel"] = np.array([1 - _alike(*(_kernel(w, x) for w in pair)) for pair in pairs])
-    return found
+    row["kernel"] = np.array([1 - _alike(*(_kernel(w, x) for w in pair)) for pair in pairs])
+    return row
 
 
 def _shapes(f) -> dict:
@@ -204,19 +204,19 @@ def _cell(reading: str, scaling: str, initial: float, width: int, method: str) -
     setup = _reading(reading, scaling, initial)
     if method != "descent":
         setup = replace(setup, steps=_STEPS, decay=_DECAY)
-    found = []
+    parts = []
     for day in DAYS:
         recording = setup.repeated(day).record()
         options = {"seed": 100 * day, "progress": False, "whiten": _SOLVERS.get(method, True)}
         model, history, _ = train_windows(setup, recording, width, NETWORKS, **options)
         start = Weights.random(NETWORKS, width, initial=initial, seed=100 * day)
-        found.append(described(model, start, recording, setup))
-        found[-1]["best test"] = history.best_test
-        found[-1]["derailed"] = history.derailed.astype(int)
-        late = np.array([*history.epochs, np.inf])
+        parts.append(described(model, start, recording, setup))
+        parts[-1]["best test"] = history.best_test
+        parts[-1]["derailed"] = history.derailed.astype(int)
+        epochs = np.array([*history.epochs, np.inf])
         half = np.vstack([history.training < 0.5, np.full(NETWORKS, True)]).argmax(0)
-        found[-1]["until half"] = late[half]  # epochs, or steps, with a training error above 0.5
-    return _pooled(found)
+        parts[-1]["until half"] = epochs[half]  # epochs, or steps, with a training error above 0.5
+    return _pooled(parts)
 
 
 def _grid(methods, name: str, scalings=tuple(SCALINGS), widths=WINDOWS, ranges=RANGES) -> dict:
@@ -230,12 +230,12 @@ def _grid(methods, name: str, scalings=tuple(SCALINGS), widths=WINDOWS, ranges=R
         for width in widths
     ]
     cells = _sweep(_cell, settings, code=code_hash(name), backend="sequential", label=name)
-    found: dict = {}
+    grid: dict = {}
     for setting, cell in zip(settings, cells):
-        place = found.setdefault(setting["method"], {}).setdefault(setting["scaling"], {})
+        place = grid.setdefault(setting["method"], {}).setdefault(setting["scaling"], {})
         place = place.setdefault(setting["reading"], {}).setdefault(str(setting["initial"]), {})
         place[str(setting["width"])] = cell
-    return {"ranges": ranges, "days": DAYS, "networks": NETWORKS, "cells": found}
+    return {"ranges": ranges, "days": DAYS, "networks": NETWORKS, "cells": grid}
 
 
 @study
@@ -256,7 +256,7 @@ def _start_solver() -> dict:
 def _against(reading: str, initial: float) -> dict:
     """Shares of names in networks of window 21: real torques, and one network for each null."""
     setup, width = replace(_reading(reading, "0 to 1", initial), epochs=_NULL_EPOCHS), 21
-    found: dict = {"real": [], "shifted": [], "phases": []}
+    by_kind: dict = {"real": [], "shifted": [], "phases": []}
     for day in DAYS:
         training, _ = split(setup.repeated(day).record())
         data = TrainingSet.from_recording(training, width, scaling=setup.scaling)
@@ -279,8 +279,8 @@ def _against(reading: str, initial: float) -> dict:
             model = TorqueModel(model.weights, data.inputs, data.outputs, LOG_STEP)
             inertia = gains(mean_gradient(model, cases(training, width)[0]), LOG_STEP)[:, 0, 0, 2]
             shapes = {layer: _shapes(getattr(model.weights, a)) for layer, a in LAYERS.items()}
-            found[kind].append({**shapes, "M11": inertia})
-    return {kind: _pooled(each) for kind, each in found.items()}
+            by_kind[kind].append({**shapes, "M11": inertia})
+    return {kind: _pooled(each) for kind, each in by_kind.items()}
 
 
 @study
@@ -293,8 +293,8 @@ def _start_nulls() -> dict:
     rows = _sweep(
         _against, settings, code=code_hash("start-nulls"), backend="sequential", label="nulls"
     )
-    found: dict = {}
+    by_reading: dict = {}
     for setting, row in zip(settings, rows):
-        found.setdefault(setting["reading"], {})[str(setting["initial"])] = row
+        by_reading.setdefault(setting["reading"], {})[str(setting["initial"])] = row
     counts = {"draws": _NULL_DRAWS, "networks": _NULL_NETWORKS * len(DAYS)}
-    return {"ranges": _NULL_RANGES, "epochs": _NULL_EPOCHS, **counts, "rows": found}
+    return {"ranges": _NULL_RANGES, "epochs": _NULL_EPOCHS, **counts, "rows": by_reading}

@@ -9,15 +9,15 @@ from typing import NamedTuple
 import numpy as np
 
 from beyond.control.adaptive import (
-    _PARAMETERS,
+    PARAMETERS,
+    CraigHsuSastry,
+    ModelReference,
     SlotineLi,
     Watched,
-    _CraigHsuSastry,
-    _ModelReference,
     mixed_regressor,
 )
-from beyond.control.guarded import _Guarded
-from beyond.control.online import _Abreast
+from beyond.control.guarded import Guarded
+from beyond.control.online import Abreast
 from ddlib.control import ComputedTorque, ControlLaw, Controller, pd
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS, Effects
@@ -25,9 +25,9 @@ from ddlib.setups import KD, Setup
 from ddlib.simulation import CONTROL_STEP, follow
 from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS, Trajectory, pick_and_place
 
-_RIGID = _PARAMETERS[:3]
-_FRICTION = _PARAMETERS[5:]
-_FULL = (*_RIGID, *_FRICTION)
+_RIGID = PARAMETERS[:3]
+_FRICTION = PARAMETERS[5:]
+WITH_FRICTION = (*_RIGID, *_FRICTION)
 TRUTH = np.array([CMU_DD_ARM_II.a, CMU_DD_ARM_II.b, CMU_DD_ARM_II.d])  # without a load
 _INERTIA = np.array([CMU_DD_ARM_II.a + 2 * CMU_DD_ARM_II.b, CMU_DD_ARM_II.d])  # kg m^2, stretched
 
@@ -39,38 +39,40 @@ _BOX = np.array([[2.6, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0], [14.0, 4.0, 2.5, 20.0, 5.0
 _AFTER = 0.1  # s, rest before and after each motion
 
 # Slotine & Li without and with friction; Craig, Hsu & Sastry; a reference model of each joint.
-_LAWS = ("rigid body", "with friction", "measured acceleration", "joint models")
+LAWS = ("rigid body", "with friction", "measured acceleration", "joint models")
 
 # Of a grid of nine, on four motions of another seed, the quickest that settles.
 _RATES = {
-    "joint damping": dict(zip(_LAWS, (3.0, 3.0, 10.0, 0.01))),
-    "state feedback": dict(zip(_LAWS, (3.0, 10.0, 10.0, 0.3))),
+    "joint damping": dict(zip(LAWS, (3.0, 3.0, 10.0, 0.01))),
+    "state feedback": dict(zip(LAWS, (3.0, 10.0, 10.0, 0.3))),
 }
 
 
 @dataclass(frozen=True)
-class _Behind:
+class BehindModel:
     """A controller that follows the motion of a linear model: its velocity never jumps."""
 
     controller: Controller
-    model: _ModelReference
+    model: ModelReference
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
+        """The controller's law, with the model's motion for a reference."""
         return self.controller.start(self.model.model(reference, step), step)
 
     @property
     def estimate(self):
+        """What the controller inside takes for true."""
         return self.controller.estimate
 
 
 _POLE = 7.0  # 1/s, twice: without a load the arm stays below `LIMITS` at the largest jump
 
-SMOOTH = _ModelReference((_POLE**2,) * 2, (2 * _POLE,) * 2, (_POLE,) * 2, np.zeros(8), np.zeros(8))
+SMOOTH = ModelReference((_POLE**2,) * 2, (2 * _POLE,) * 2, (_POLE,) * 2, np.zeros(8), np.zeros(8))
 
 
 def _taught(controller: Controller, estimate) -> Controller:
     """The controller with other estimates to begin with."""
-    if isinstance(controller, _Behind):
+    if isinstance(controller, BehindModel):
         return replace(controller, controller=replace(controller.controller, estimate=estimate))
     return replace(controller, estimate=estimate)
 
@@ -84,7 +86,7 @@ def gains(setup: Setup) -> tuple[np.ndarray, np.ndarray]:
     return slope, np.stack([slope * KD / _INERTIA, slope + KD / _INERTIA])
 
 
-def _rates(law: str, setup: Setup, factor=1.0) -> np.ndarray:
+def rates_of_adaptation(law: str, setup: Setup, factor=1.0) -> np.ndarray:
     """Speeds of adaptation of a `law` in a `setup`, times a `factor` of shape (...)."""
     speed = _RATES[setup.name][law] * np.asarray(factor, float)[..., None]
     if law == "joint models":
@@ -101,28 +103,28 @@ def make(law: str, setup: Setup, start=None, factor=1.0, *, jumps=False, **optio
     """
     slope, (a0, a1) = gains(setup)
     start = TRUTH if start is None else np.asarray(start, float)
-    rate = _rates(law, setup, factor)
+    rate = rates_of_adaptation(law, setup, factor)
     if law == "joint models":
         own = np.stack([start[..., 0] + 2 * start[..., 1], start[..., 2]], -1)
         each = np.stack([own, a0 * own, a1 * own, 0 * own], -1)
         each = each.reshape(*own.shape[:-1], 8)
-        return _ModelReference(a0, a1, a1 / 2, rate, each, limit=LIMITS, **options)
-    names = _RIGID if law == "rigid body" else _FULL
+        return ModelReference(a0, a1, a1 / 2, rate, each, limit=LIMITS, **options)
+    names = _RIGID if law == "rigid body" else WITH_FRICTION
     missing = np.zeros((*start.shape[:-1], len(names) - start.shape[-1]))
     first = np.concatenate([start, missing], -1)
     if law == "measured acceleration":
-        made = _CraigHsuSastry(a0, a1, a1 / 2, rate, first, *_BOX, names, **options)
+        controller = CraigHsuSastry(a0, a1, a1 / 2, rate, first, *_BOX, names, **options)
     else:
-        made = SlotineLi(KD, slope, rate, first, names, **options)
-    return made if jumps else _Behind(replace(made, limit=LIMITS), SMOOTH)
+        controller = SlotineLi(KD, slope, rate, first, names, **options)
+    return controller if jumps else BehindModel(replace(controller, limit=LIMITS), SMOOTH)
 
 
-def _fixed(setup: Setup) -> dict[str, Controller]:
+def fixed_laws(setup: Setup) -> dict[str, Controller]:
     """What the adaptive laws are compared with: PD, and computed torque without a load."""
     _, (a0, a1) = gains(setup)
     return {
         "PD": pd(setup.controller.kp, KD),
-        "computed torque": _Behind(ComputedTorque(CMU_DD_ARM_II, a0, a1), SMOOTH),
+        "computed torque": BehindModel(ComputedTorque(CMU_DD_ARM_II, a0, a1), SMOOTH),
     }
 
 
@@ -144,10 +146,10 @@ def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects,
     t = steps * CONTROL_STEP
     reference = plan(extents, t)
     reference = Trajectory(*(np.broadcast_to(x, (len(laws), *x.shape)) for x in reference))
-    guard = Watched(_Guarded(_Abreast(list(laws.values()), [1] * len(laws))))
+    guard = Watched(Guarded(Abreast(list(laws.values()), [1] * len(laws))))
     log = follow(arm, guard, reference, t, effects=effects, duration=MOTION_SECONDS, **options)
-    hand, wanted = (arm.forward_kinematics(x)[..., 1, :] for x in (log.q_true, log.reference.q))
-    off = 1e3 * np.linalg.norm(hand - wanted, axis=-1)
+    reached, wanted = (arm.forward_kinematics(x)[..., 1, :] for x in (log.q_true, log.reference.q))
+    off = 1e3 * np.linalg.norm(reached - wanted, axis=-1)
     stops = guard.law.stops
     running = stops.running(log.t)
     off = np.where(running, off, np.nan)[..., log.motion]
@@ -164,40 +166,41 @@ def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects,
 
 
 @dataclass(frozen=True)
-class _Rounded:
+class RoundedReadings:
     """Readings rounded to a step of each run's own, after a shift of its own; 0: not rounded."""
 
     step: np.ndarray
     shift: np.ndarray
 
     def apply(self, x, rng=None):
+        """Readings of `x`, rounded."""
         step = np.where(self.step > 0, self.step, 1.0)
-        found = np.round((x + self.shift) / step) * step - self.shift
-        return np.where(self.step > 0, found, x)
+        rounded = np.round((x + self.shift) / step) * step - self.shift
+        return np.where(self.step > 0, rounded, x)
 
 
-def _rounding(setup: Setup, runs: int, seed: int, step=None) -> Effects:
+def with_rounding(setup: Setup, runs: int, seed: int, step=None) -> Effects:
     """The set-up's effects, in each run with an encoder's zero (and step) of its own."""
     step = np.full(runs, setup.effects.encoder[0].step) if step is None else np.asarray(step)
     shift = np.random.default_rng(seed).uniform(0, 1, (runs, 2)) * step[:, None]
-    return replace(setup.effects, encoder=(_Rounded(step[:, None], shift),))
+    return replace(setup.effects, encoder=(RoundedReadings(step[:, None], shift),))
 
 
-def _trials(laws, extents, arm: Arm, effects: Effects, **options) -> tuple[list[_Trial], dict]:
+def run_trials(laws, extents, arm: Arm, effects: Effects, **options) -> tuple[list[_Trial], dict]:
     """Motions ``(trials, runs, 2)`` one after another, and the laws with what they have learnt."""
-    found = []
+    trials = []
     for each in extents:
-        found.append(trial(laws, each, arm, effects, **options))
-        laws = found[-1].laws
-    return found, laws
+        trials.append(trial(laws, each, arm, effects, **options))
+        laws = trials[-1].laws
+    return trials, laws
 
 
-def _drawn(runs: int, count: int, seed: int) -> np.ndarray:
+def drawn_extents(runs: int, count: int, seed: int) -> np.ndarray:
     """Random extents of the family, degrees, shape `(count, runs, 2)`, by a `seed`."""
     return np.random.default_rng(seed).uniform(0, MAX_EXTENT_DEG, (count, runs, 2))
 
 
-def _by_law(found: list[_Trial], laws, what: str = "settled") -> dict[str, np.ndarray]:
+def errors_by_law(found: list[_Trial], laws, what: str = "settled") -> dict[str, np.ndarray]:
     """Errors of trials (an attribute of theirs) by law, shape (trials, runs), mm."""
     return {name: np.stack([getattr(t, what)[k] for t in found]) for k, name in enumerate(laws)}
 

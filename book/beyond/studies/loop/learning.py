@@ -9,8 +9,8 @@ import numpy as np
 
 from beyond.control.adaptive import Watched
 from beyond.control.feedback_error import GenericTerms, RigidBodyTerms
-from beyond.control.guarded import _Guarded
-from beyond.control.online import _Abreast
+from beyond.control.guarded import Guarded
+from beyond.control.online import Abreast
 from beyond.studies.loop import learners
 from ddlib.control import Feedforward
 from ddlib.dynamics import Arm, end_point_error, with_load
@@ -25,57 +25,58 @@ _TESTS = ((15.0, 15.0), (40.0, 20.0), (20.0, 40.0))  # extents, degrees
 _RATES = (0.1, 0.3, 1.0, 3.0, 10.0)  # multiples of the rates chosen
 
 
-def _trial(draw: learners.Draw, controllers, rows, references, t, arm: Arm | None = None):
+def trial(draw: learners.Draw, controllers, rows, references, t, arm: Arm | None = None):
     """End-point errors (mm, RMS), (rows, seeds), and stops of one trial of controllers abreast."""
-    arm, guard = arm or draw.setup.arm, Watched(_Guarded(_Abreast(controllers, rows)))
+    arm, guard = arm or draw.setup.arm, Watched(Guarded(Abreast(controllers, rows)))
     run = follow(arm, guard, references, t, effects=draw.effects)
     off = np.linalg.norm(end_point_error(arm, run.reference.q, run.q_true), axis=-1)
     during = (run.t > -1e-9) & (run.t < -10 * t[0] - 1e-9)  # the rest is a tenth of the motion
     return 1e3 * np.sqrt((off[..., during] ** 2).mean(-1)), guard.law.stops
 
 
-def _repeated(reference: Trajectory, count: int) -> Trajectory:
+def repeated(reference: Trajectory, count: int) -> Trajectory:
+    """A reference several times, along a new first axis."""
     return Trajectory(*(np.broadcast_to(x, (count, *x.shape)) for x in reference))
 
 
-def _practise(draw, pupils, reference, t, tested: Trajectory | None = None):
+def practise(draw, pupils, reference, t, tested: Trajectory | None = None):
     """Trials of one motion: errors by trial of each learner, and of a second motion on the way."""
     errors = {name: [] for name in pupils}
     rows = [1] * len(pupils) * (2 if tested else 1)
-    for _ in range(learners._TRIALS):
+    for _ in range(learners.TRIALS):
         now = [learner.controller() for learner in pupils.values()]
         frozen = [x.controller(False) for x in pupils.values()] if tested else []
-        every = _repeated(reference, len(now))
+        every = repeated(reference, len(now))
         if tested:
-            more = _repeated(tested, len(now))
+            more = repeated(tested, len(now))
             every = Trajectory(*(np.concatenate(pair) for pair in zip(every, more)))
-        found = _trial(draw, now + frozen, rows, every, t)[0].reshape(-1, len(now), draw.seeds)
+        of_trial = trial(draw, now + frozen, rows, every, t)[0].reshape(-1, len(now), draw.seeds)
         for k, (name, learner) in enumerate(pupils.items()):
-            errors[name].append(found[:, k])
+            errors[name].append(of_trial[:, k])
             learner.keep(now[k])
     return {name: np.array(each) for name, each in errors.items()}
 
 
 def _motion(draw: learners.Draw) -> dict:
     """Practise one motion, be asked for others, go on to the other extents."""
-    pupils, asked = learners._lineup(draw), learners.motions(draw)
+    pupils, asked = learners.motion_learners(draw), learners.motions(draw)
     t, reference = asked["the same"]
-    first = _practise(draw, pupils, reference, t)
+    first = practise(draw, pupils, reference, t)
     tests = {}
     plain = [draw.plain, Feedforward(draw.equations, draw.setup.controller)]
     for name, (times, wanted) in asked.items():
         frozen = [learner.controller(False) for learner in pupils.values()]
         learning = [copy.deepcopy(learner).controller() for learner in pupils.values()]
-        count = len(plain) + 2 * len(pupils)
-        every = _repeated(wanted, count)
-        found, _ = _trial(draw, plain + frozen + learning, [1] * count, every, times)
+        runs = len(plain) + 2 * len(pupils)
+        every = repeated(wanted, runs)
+        errors, _ = trial(draw, plain + frozen + learning, [1] * runs, every, times)
         tests[name] = {
-            "no feedforward": found[0],
-            "exact equations": found[1],
-            "frozen": dict(zip(pupils, found[2:])),
-            "learning": dict(zip(pupils, found[2 + len(pupils) :])),
+            "no feedforward": errors[0],
+            "exact equations": errors[1],
+            "frozen": dict(zip(pupils, errors[2:])),
+            "learning": dict(zip(pupils, errors[2 + len(pupils) :])),
         }
-    second = _practise(draw, pupils, asked["other extents"][1], t, reference)
+    second = practise(draw, pupils, asked["other extents"][1], t, reference)
     return {
         "practice": {name: x[:, 0] for name, x in first.items()},
         "tests": tests,
@@ -86,7 +87,7 @@ def _motion(draw: learners.Draw) -> dict:
 
 def _family(draw: learners.Draw) -> dict:
     """Practise members of the paper's family; a load from half-way on; tests on three motions."""
-    pupils, t = learners._candidates(draw), learners.grid()
+    pupils, t = learners.family_learners(draw), learners.grid()
     loaded = with_load(draw.setup.arm, _LOAD)
     tests = [pick_and_place(np.tile(extents, (draw.seeds, 1)), t) for extents in _TESTS]
     practice, tested = ({name: [] for name in ("no feedforward", *pupils)} for _ in range(2))
@@ -99,14 +100,14 @@ def _family(draw: learners.Draw) -> dict:
         controllers = [draw.plain]
         for learner in pupils.values():
             controllers += [learner.controller(learning), learner.controller(False)]
-        found = _trial(draw, controllers, rows, every, t, arm)[0]
-        return found.reshape(1 + len(pupils), size, draw.seeds)
+        errors = trial(draw, controllers, rows, every, t, arm)[0]
+        return errors.reshape(1 + len(pupils), size, draw.seeds)
 
-    for k in range(2 * learners._TRIALS):
-        arm = draw.setup.arm if k < learners._TRIALS else loaded
-        for name, found in zip(practice, once(k, arm)):
-            practice[name].append(found[0])
-            tested[name].append(found[1:].mean(0))
+    for k in range(2 * learners.TRIALS):
+        arm = draw.setup.arm if k < learners.TRIALS else loaded
+        for name, errors in zip(practice, once(k, arm)):
+            practice[name].append(errors[0])
+            tested[name].append(errors[1:].mean(0))
     after = once(0, draw.setup.arm, learning=False)
     last = once(0, loaded, learning=False)
     return {
@@ -124,14 +125,18 @@ def _rates(draw: learners.Draw) -> dict:
     tiled = {n: np.repeat(x, many, axis=0) for n, x in vars(draw.untrained.weights).items()}
     model = replace(draw.untrained, weights=Weights(**tiled))
     pupils = {
-        "exact terms": learners.Terms(RigidBodyTerms(learners.NAMES), draw, learners._RATE * rates),
-        "generic terms": learners.Terms(GenericTerms(), draw, learners._RATE * rates),
-        "network, by feedback": learners._by_feedback(model, draw, rates + np.zeros(draw.seeds)),
+        "exact terms": learners.Terms(
+            RigidBodyTerms(learners.NAMES), draw, learners.TERMS_RATE * rates
+        ),
+        "generic terms": learners.Terms(GenericTerms(), draw, learners.TERMS_RATE * rates),
+        "network, by feedback": learners.taught_by_feedback(
+            model, draw, rates + np.zeros(draw.seeds)
+        ),
     }
-    every, stopped = _repeated(reference, many * len(pupils)), False
-    for _ in range(learners._TRIALS // 2):
+    every, stopped = repeated(reference, many * len(pupils)), False
+    for _ in range(learners.TRIALS // 2):
         now = [learner.controller() for learner in pupils.values()]
-        errors, stops = _trial(draw, now, [many] * len(now), every, t)
+        errors, stops = trial(draw, now, [many] * len(now), every, t)
         stopped = stopped | stops.stopped
         for learner, controller in zip(pupils.values(), now):
             learner.keep(controller)
@@ -143,9 +148,9 @@ def _rates(draw: learners.Draw) -> dict:
 @study
 def _learning_in_the_loop() -> dict:
     """End-point errors of all learners, mm, for each reading of section 4."""
-    found = {}
+    by_setup = {}
     for setup in (JOINT_DAMPING, STATE_FEEDBACK):
         draw = learners.Draw(setup)
         parts = {"motion": _motion(draw), "family": _family(draw), "rates": _rates(draw)}
-        found[setup.name] = parts
-    return {"setups": found, "rates": _RATES, "trials": learners._TRIALS, "load": _LOAD}
+        by_setup[setup.name] = parts
+    return {"setups": by_setup, "rates": _RATES, "trials": learners.TRIALS, "load": _LOAD}

@@ -9,19 +9,19 @@ from dataclasses import replace
 import numpy as np
 
 from beyond.control.adaptive import Watched
-from beyond.control.guarded import _Guarded
+from beyond.control.guarded import Guarded
 from beyond.control.windowed import (
+    MeasuredWindows,
     WindowFeedforward,
-    _MeasuredWindows,
-    _past_slopes,
-    _poles_inside,
+    past_slopes,
+    poles_inside,
 )
 from beyond.rivals.gaussian import GaussianProcess
 from beyond.rivals.identified import Identified, Linear
 from beyond.rivals.lagrangian import LagrangianNetwork
 from beyond.rivals.networks import BySolver
 from beyond.rivals.protocol import Cases, Estimating
-from beyond.studies.loop import run_time_parts as parts
+from beyond.studies.loop import feedforwards as parts
 from ddlib.control import PID, plant
 from ddlib.dynamics import end_point_error, with_load
 from ddlib.effects import CoulombFriction, Delay, ViscousFriction
@@ -70,9 +70,9 @@ def _lines(setup: Setup) -> dict[str, list]:
     return {
         "none": [_nothing],
         "exact": [parts.exact(setup)],
-        "exact, with its impulses": [parts._with_impulse(setup)],
-        **{f"exact, window {w}": [parts._through_window(parts.exact(setup), w)] for w in WINDOWS},
-        **{f"network, window {w}": parts._networks(setup, _MEMBERS, w) for w in WINDOWS},
+        "exact, with its impulses": [parts.with_impulse(setup)],
+        **{f"exact, window {w}": [parts.through_window(parts.exact(setup), w)] for w in WINDOWS},
+        **{f"network, window {w}": parts.networks(setup, _MEMBERS, w) for w in WINDOWS},
     }
 
 
@@ -81,8 +81,8 @@ def _few(setup: Setup) -> dict[str, list]:
     return {
         "none": [_nothing],
         "exact": [parts.exact(setup)],
-        "exact, window": [parts._through_window(parts.exact(setup))],
-        "network": parts._networks(setup, _FEW),
+        "exact, window": [parts.through_window(parts.exact(setup))],
+        "network": parts.networks(setup, _FEW),
     }
 
 
@@ -94,72 +94,73 @@ def _square(setup: Setup, reference: Trajectory) -> tuple[dict, dict]:
     """Scores of all lines over the square, and the torques of the networks."""
     rows, torques = {}, {}
     for name, models in _lines(setup).items():
-        torque = parts._planned(models, reference)
+        torque = parts.torques_along(models, reference)
         log = parts.drive(setup, parts.given(torque, setup.controller), reference, _days(models))
-        rows[name] = parts._told(parts.score(setup.arm, log))
+        rows[name] = parts.median_scores(parts.score(setup.arm, log))
         if name.startswith("network"):
             torques[name] = torque
     days = range(1, 1 + _FEW)
-    log = parts.drive(setup, parts._computed_torque(setup), reference, days)
-    rows["computed torque"] = parts._told(parts.score(setup.arm, log))
+    log = parts.drive(setup, parts.computed_torque(setup), reference, days)
+    rows["computed torque"] = parts.median_scores(parts.score(setup.arm, log))
     return rows, torques
 
 
 def _rivals(setup: Setup, reference: Trajectory) -> dict:
     """Rivals of windows as feedforwards, with their error on trajectory 6."""
-    made: dict = {name: ([], []) for name in _RIVALS}
+    by_rival: dict = {name: ([], []) for name in _RIVALS}
     days = range(1, 1 + _FEW)
     for day in days:
         training, six = (
-            Cases.windows(part, parts._WIDTH) for part in split(setup.repeated(day).record())
+            Cases.windows(part, parts.WIDTH) for part in split(setup.repeated(day).record())
         )
         for name, make in _RIVALS.items():
             rival = make(day).fit(training)
             feedforward = WindowFeedforward(
-                rival.torque, parts._WIDTH, between="line", step=LOG_STEP
+                rival.torque, parts.WIDTH, between="line", step=LOG_STEP
             )
-            torques, scores = made[name]
+            torques, scores = by_rival[name]
             scores.append(rmss(rival.torque(six.x), six.torque))
             # run by run: a process keeps a product of all windows with all it has learnt
             runs = (Trajectory(*(x[k] for x in reference)) for k in range(len(reference.q)))
             torques.append(np.stack([feedforward(*run) for run in runs]))
     rows = {}
-    for name, (torques, scores) in made.items():
+    for name, (torques, scores) in by_rival.items():
         log = parts.drive(setup, parts.given(np.stack(torques), setup.controller), reference, days)
-        rows[name] = {**parts._told(parts.score(setup.arm, log)), "RMSS": scores}
+        rows[name] = {**parts.median_scores(parts.score(setup.arm, log)), "RMSS": scores}
     return rows
 
 
 def _course(setup: Setup) -> dict:
     """Trajectory 6 over time, on day 1: joint errors and end-point errors at the start."""
     reference = parts.rounded(APPENDIX_I[5:], 0.0)
-    log, slices = parts._driven(setup, _made(_lines(setup), reference), reference)
+    log, slices = parts.drive_lines(setup, _made(_lines(setup), reference), reference)
     shown = (log.t >= _SHOWN[0] - 1e-9) & (log.t <= _SHOWN[1] + 1e-9)
     gap = 1e3 * np.linalg.norm(end_point_error(setup.arm, log.reference.q, log.q_true), axis=-1)
     joints = np.rad2deg(log.tracking_error)
-    found = {
+    by_line = {
         name: {
             "hand": np.median(gap[part], (0, 1))[shown],
             "joints": np.median(joints[part], (0, 1))[shown],
         }
         for name, part in slices.items()
     }
-    return {**found, "time": log.t[shown]}
+    return {**by_line, "time": log.t[shown]}
 
 
 def _made(lines: dict, reference) -> dict:
     """Torques of lines along a reference, with the days of their members."""
     return {
-        name: (parts._planned(models, reference), _days(models)) for name, models in lines.items()
+        name: (parts.torques_along(models, reference), _days(models))
+        for name, models in lines.items()
     }
 
 
 def _with_computed(setup: Setup, made: dict, reference, **changed) -> dict:
     """The same, and computed torque."""
     days = range(1, 1 + _FEW)
-    log = parts.drive(setup, parts._computed_torque(setup), reference, days, **changed)
+    log = parts.drive(setup, parts.computed_torque(setup), reference, days, **changed)
     middle = np.median(parts.score(setup.arm, log).whole, -1)
-    return parts._errors(setup, made, reference, **changed) | {"computed torque": middle}
+    return parts.median_errors(setup, made, reference, **changed) | {"computed torque": middle}
 
 
 def _corner(setup: Setup) -> dict:
@@ -167,29 +168,34 @@ def _corner(setup: Setup) -> dict:
     lines = _few(setup)
 
     def along(reference):
-        return parts._errors(setup, _made(lines, reference), reference)
+        return parts.median_errors(setup, _made(lines, reference), reference)
 
-    found = {f"{seconds:g}": along(parts.rounded(parts._FEWER, seconds)) for seconds in _ROUNDED}
-    return {"rounded": found, "smooth": along(smooth_pick_and_place(parts._FEWER, parts._T))}
+    by_seconds = {
+        f"{seconds:g}": along(parts.rounded(parts.FEWER_EXTENTS, seconds)) for seconds in _ROUNDED
+    }
+    return {
+        "rounded": by_seconds,
+        "smooth": along(smooth_pick_and_place(parts.FEWER_EXTENTS, parts.TIMES)),
+    }
 
 
 def _rates(setup: Setup, reference) -> dict:
     """What is done between the samples of the log, and windows at the wrong period."""
     options: dict = {between: {"between": between} for between in ("window", "line", "hold")}
     options["2 ms apart"] = {"every": 1, "step": None}
-    lines = {name: parts._networks(setup, _FEW, **how) for name, how in options.items()}
-    return parts._errors(setup, _made(lines, reference), reference)
+    lines = {name: parts.networks(setup, _FEW, **how) for name, how in options.items()}
+    return parts.median_errors(setup, _made(lines, reference), reference)
 
 
 def _changed(setup: Setup, made: dict, reference) -> dict:
     """Load, friction and delay that no feedforward was made for."""
-    found: dict = {"load": {}, "friction": {}, "delay": {}}
+    result: dict = {"load": {}, "friction": {}, "delay": {}}
     for load in _LOADS:
         arm = with_load(setup.arm, load)
         knows = _made(
-            {"exact, window, knows": [parts._through_window(parts.exact(setup, arm))]}, reference
+            {"exact, window, knows": [parts.through_window(parts.exact(setup, arm))]}, reference
         )
-        found["load"][f"{load:g}"] = _with_computed(setup, made | knows, reference, arm=arm)
+        result["load"][f"{load:g}"] = _with_computed(setup, made | knows, reference, arm=arm)
     viscous, coulomb = setup.effects.friction
     for factor in _FRICTIONS:
         friction = (
@@ -197,37 +203,37 @@ def _changed(setup: Setup, made: dict, reference) -> dict:
             CoulombFriction(factor * np.asarray(coulomb.level)),
         )
         effects = replace(setup.effects, friction=friction)
-        found["friction"][f"{factor:g}"] = _with_computed(setup, made, reference, effects=effects)
+        result["friction"][f"{factor:g}"] = _with_computed(setup, made, reference, effects=effects)
     for late in _LATE:
         effects = replace(setup.effects, actuator=(*setup.effects.actuator, Delay(late)))
-        found["delay"][f"{late}"] = _with_computed(setup, made, reference, effects=effects)
-    return found
+        result["delay"][f"{late}"] = _with_computed(setup, made, reference, effects=effects)
+    return result
 
 
 def _gains(setup: Setup, made: dict, reference) -> dict:
     """Softer and stiffer feedback, without and with feedforwards."""
-    found = {}
+    by_factor = {}
     for factor in _GAINS:
         kp, kd = (factor * np.asarray(k) for k in (setup.controller.kp, setup.controller.kd))
         other = replace(setup, controller=PID(tuple(kp), kd=tuple(kd)))
-        found[f"{factor:g}"] = parts._errors(other, made, reference)
-    return found
+        by_factor[f"{factor:g}"] = parts.median_errors(other, made, reference)
+    return by_factor
 
 
 def _scatter(setup: Setup, rows: dict, torques: dict, reference) -> dict:
     """Each network's error as the report measures it, and other predictors of the end point's."""
-    found = {}
+    by_window = {}
     recording = setup.record()
     for width in WINDOWS:
         name = f"network, window {width}"
         model = results.networks(width, setup.name)
-        found[str(width)] = {
+        by_window[str(width)] = {
             "end point": rows[name]["whole"],
             "RMSS": errors(model, recording).test,
-            "through the loop": parts._logged_error(setup, model, split(recording)[1]),
-            "planned": np.median(parts._predicted(setup, torques[name], reference), -1),
+            "through the loop": parts.error_of_logged(setup, model, split(recording)[1]),
+            "planned": np.median(parts.predicted_error(setup, torques[name], reference), -1),
         }
-    return found
+    return by_window
 
 
 def _bound(setup: Setup, torques: np.ndarray, reference) -> dict:
@@ -238,7 +244,7 @@ def _bound(setup: Setup, torques: np.ndarray, reference) -> dict:
     knock[[0, 1], 0, [0, 1]] = 1.0
     gain = np.abs(parts.through_loop(system, knock)).sum(1).T  # (angle, torque), rad/(N m)
     days = range(1, 1 + len(torques))
-    other = parts._planned([parts._through_window(parts.exact(setup))], reference)
+    other = parts.torques_along([parts.through_window(parts.exact(setup))], reference)
     runs = [
         parts.drive(setup, parts.given(torque, setup.controller), reference, days)
         for torque in (torques, other)
@@ -255,8 +261,8 @@ def _bound(setup: Setup, torques: np.ndarray, reference) -> dict:
 
 def _inside(setup: Setup) -> dict:
     """Models inside the loop: which runs the guard stops, the error of the others."""
-    reference = parts.rounded(parts._EXTENTS[list(_CORNERS)], 0.0)
-    shares, found = np.array(_SHARES)[:, None], {}
+    reference = parts.rounded(parts.EXTENTS[list(_CORNERS)], 0.0)
+    shares, rows = np.array(_SHARES)[:, None], {}
     models = {name: _few(setup)[name] for name in ("exact, window", "network")}
     day = setup.repeated(1).effects
     for name, several in models.items():
@@ -265,26 +271,26 @@ def _inside(setup: Setup) -> dict:
             row: dict = {"stopped": [], "error": [], "poles": []}
             for model in several:
                 law = Watched(
-                    _Guarded(_MeasuredWindows(model, setup.controller, shares), speeds=_LIMIT)
+                    Guarded(MeasuredWindows(model, setup.controller, shares), speeds=_LIMIT)
                 )
-                log = follow(setup.arm, law, reference, parts._T, effects=effects, duration=3.0)
+                log = follow(setup.arm, law, reference, parts.TIMES, effects=effects, duration=3.0)
                 row["stopped"].append(law.law.stops.stopped.mean(1))
                 row["error"].append(np.median(parts.score(setup.arm, log).whole, 1))
                 row["poles"].append(_largest_poles(setup, model, reference, late))
-            found[f"{name}, {late}"] = row
-    return found
+            rows[f"{name}, {late}"] = row
+    return rows
 
 
 def _largest_poles(setup: Setup, model: WindowFeedforward, reference, late: int) -> list[float]:
     """Size of the largest pole of the linear loop with a model inside, at each of `_SHARES`."""
-    windows = sliding_windows(reference.q[..., 250:1750:5, :], parts._WIDTH).reshape(
-        -1, 2, parts._WIDTH
+    windows = sliding_windows(reference.q[..., 250:1750:5, :], parts.WIDTH).reshape(
+        -1, 2, parts.WIDTH
     )
-    past = _past_slopes(model.model, windows[::10])
+    past = past_slopes(model.model, windows[::10])
     viscous = np.asarray(setup.effects.friction[0].coefficient)
     joints = plant(setup.arm.mass_matrix([0.0, float(windows[:, 1].mean())]), viscous)
     poles = [
-        _poles_inside(joints, setup.controller, s * past, CONTROL_STEP, late=late) for s in _SHARES
+        poles_inside(joints, setup.controller, s * past, CONTROL_STEP, late=late) for s in _SHARES
     ]
     return [float(np.abs(each).max()) for each in poles]
 
@@ -292,29 +298,29 @@ def _largest_poles(setup: Setup, model: WindowFeedforward, reference, late: int)
 @study
 def _run_time() -> dict:
     """Feedforwards of the square of extents, two readings: end-point errors, RMS, mm."""
-    reference = parts.rounded(parts._EXTENTS, 0.0)
-    found: dict = {
-        "points": parts._POINTS,
-        "extents": parts._EXTENTS,
+    reference = parts.rounded(parts.EXTENTS, 0.0)
+    result: dict = {
+        "points": parts.POINTS,
+        "extents": parts.EXTENTS,
         "shares": _SHARES,
         "limit": _LIMIT,
     }
-    found["readings"] = {}
-    fewer = parts.rounded(parts._FEWER, 0.0)
+    result["readings"] = {}
+    fewer = parts.rounded(parts.FEWER_EXTENTS, 0.0)
     for setup in _READINGS:
-        made = _made(_few(setup), fewer)
+        lines = _made(_few(setup), fewer)
         rows, torques = _square(setup, reference)
         with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):
             rows |= _rivals(setup, reference)
-        found["readings"][setup.name] = {
+        result["readings"][setup.name] = {
             "square": rows,
             "course": _course(setup),
             "corner": _corner(setup),
             "rates": _rates(setup, fewer),
-            "changed": _changed(setup, made, fewer),
-            "gains": _gains(setup, made, fewer),
+            "changed": _changed(setup, lines, fewer),
+            "gains": _gains(setup, lines, fewer),
             "scatter": _scatter(setup, rows, torques, reference),
-            "bound": _bound(setup, torques[f"network, window {parts._WIDTH}"], reference),
+            "bound": _bound(setup, torques[f"network, window {parts.WIDTH}"], reference),
             "inside": _inside(setup),
         }
-    return found
+    return result

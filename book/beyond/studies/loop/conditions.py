@@ -14,14 +14,14 @@ from beyond.rivals.identified import Identified
 from beyond.rivals.networks import BySolver
 from beyond.rivals.protocol import Cases, Estimating
 from beyond.studies.loop import (
-    _learning as learning,
+    feedforwards as run_time,
     joints,
     learners,
+    learning,
     motions,
-    run_time_parts as run_time,
     stirring,
 )
-from beyond.studies.loop.chain import _Sample, chain, extents, recorded
+from beyond.studies.loop.chain import Sample, chain, extents, recorded
 from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, Setup
 from ddlib.trajectories import (
     APPENDIX_I,
@@ -42,12 +42,14 @@ _LATER, _MEMBERS, _TEST = 500, 12, 4711  # first day; test motions, and their se
 
 def _copies(setup: Setup, days) -> dict:
     """End-point errors on the paper's own plan, equations given a smoothed copy of it, mm."""
-    plan, equations = run_time.rounded(run_time._FEWER, 0.0), run_time.exact(setup)
+    plan, equations = run_time.rounded(run_time.FEWER_EXTENTS, 0.0), run_time.exact(setup)
     torques = {"none": 0 * plan.q[None]}
-    torques |= {f"{s:g}": equations(*run_time.rounded(run_time._FEWER, s))[None] for s in _COPIES}
-    torques["network"] = run_time._planned(run_time._networks(setup, len(days)), plan)
-    made = {name: (torque, days) for name, torque in torques.items()}
-    return run_time._errors(setup, made, plan)
+    torques |= {
+        f"{s:g}": equations(*run_time.rounded(run_time.FEWER_EXTENTS, s))[None] for s in _COPIES
+    }
+    torques["network"] = run_time.torques_along(run_time.networks(setup, len(days)), plan)
+    lines = {name: (torque, days) for name, torque in torques.items()}
+    return run_time.median_errors(setup, lines, plan)
 
 
 def _cases(run, every: int) -> Cases:
@@ -56,7 +58,7 @@ def _cases(run, every: int) -> Cases:
 
 def _fitted(steps: int, cases: Cases, day: int) -> BySolver:
     rival = BySolver(10, steps, decay=JOINT_DAMPING.decay, initial=INITIAL, seed=day)
-    return stirring._fitted(rival, cases)
+    return stirring.fitted(rival, cases)
 
 
 def _chosen_steps(run, day: int) -> int:
@@ -82,7 +84,7 @@ def _stopped(setup: Setup, days, circles: bool) -> dict:
     }
     steps, models = [], {"chosen": [], "60": [], "identified": []}
     for day, run in zip(
-        days, motions._on_several_days(setup, [pick_and_place(APPENDIX_I[:5], t)] * len(days), days)
+        days, motions.on_several_days(setup, [pick_and_place(APPENDIX_I[:5], t)] * len(days), days)
     ):
         whole = _cases(run, 1)
         steps.append(_chosen_steps(run, day))
@@ -94,7 +96,7 @@ def _stopped(setup: Setup, days, circles: bool) -> dict:
         drawn = [motions.stirred(setup.arm, motions.random_circles(20, day), t) for day in days]
         models["twenty circles"] = [
             _fitted(_STEPS[-1], _cases(run, 4), day)
-            for day, run in zip(days, motions._on_several_days(setup, drawn, days))
+            for day, run in zip(days, motions.on_several_days(setup, drawn, days))
         ]
     today = setup.repeated(_TEST)
     hands = {motion: _hands(today, models, reference) for motion, reference in asked.items()}
@@ -109,36 +111,36 @@ def _hands(setup: Setup, models: dict, reference: Trajectory) -> dict:
             for name, several in models.items()
         }
     torques = {"none": [0 * reference.q], **torques}
-    hands = stirring._hand_errors(setup, torques, reference)
+    hands = stirring.hand_errors(setup, torques, reference)
     return {name: np.median(errors, -1) for name, errors in hands.items()}
 
 
 def _windows(seeds: int) -> dict:
     """Errors with four joints: fewer windows of twenty motions, and five with chosen training."""
-    made = chain(4)
-    test, found = joints.tested(made), {"300 of twenty": [], "750 of twenty": [], "chosen": []}
-    found["as it is"] = []
+    arm = chain(4)
+    test, errors = joints.tested(arm), {"300 of twenty": [], "750 of twenty": [], "chosen": []}
+    errors["as it is"] = []
     for seed in range(_LATER, _LATER + seeds):
-        for count in (300, 750):
-            part = recorded(made, extents(4, 20, seed), seed).thinned(count)
-            found[f"{count} of twenty"].append(_error(part, test, seed))
-        five = recorded(made, extents(4, 5, seed), seed).thinned(joints._CASES)
-        found["as it is"].append(_error(five, test, seed))
-        decay, steps = _chosen_decay(five, seed)
-        found["chosen"].append(_error(five, test, seed, decay=decay, steps=steps))
-    return found
+        for number in (300, 750):
+            part = recorded(arm, extents(4, 20, seed), seed).thinned(number)
+            errors[f"{number} of twenty"].append(_error(part, test, seed))
+        five = recorded(arm, extents(4, 5, seed), seed).thinned(joints.TRAINING_CASES)
+        errors["as it is"].append(_error(five, test, seed))
+        decay, steps = chosen_decay(five, seed)
+        errors["chosen"].append(_error(five, test, seed, decay=decay, steps=steps))
+    return errors
 
 
-def _course(training: _Sample, test: _Sample, seed: int, **options) -> np.ndarray:
+def _course(training: Sample, test: Sample, seed: int, **options) -> np.ndarray:
     """Errors on a test after each step of the solver."""
     return joints.solved(*training.pair, test.pair, seed=seed, **options).history.test
 
 
-def _error(training: _Sample, test: _Sample, seed: int, **options) -> float:
+def _error(training: Sample, test: Sample, seed: int, **options) -> float:
     return float(_course(training, test, seed, **options)[-1, 0])
 
 
-def _chosen_decay(five: _Sample, seed: int) -> tuple[float, int]:
+def chosen_decay(five: Sample, seed: int) -> tuple[float, int]:
     """Decay and number of steps with the least error on motions that are left out in turn."""
     run, best = np.repeat(np.arange(5), len(five.torque) // 5), (np.inf, 0.0, 1)
     for decay in _DECAYS:
@@ -153,9 +155,9 @@ def _chosen_decay(five: _Sample, seed: int) -> tuple[float, int]:
     return best[1:]
 
 
-def _part(sample: _Sample, cases: np.ndarray) -> _Sample:
+def _part(sample: Sample, cases: np.ndarray) -> Sample:
     runs = len(cases) * sample.runs // len(sample.torque)
-    return _Sample(sample.windows[cases], sample.torque[cases], sample.states[cases], runs)
+    return Sample(sample.windows[cases], sample.torque[cases], sample.states[cases], runs)
 
 
 def _practised(setup: Setup, seeds: int) -> dict:
@@ -173,11 +175,11 @@ def _practised(setup: Setup, seeds: int) -> dict:
 def _out_of_step(draw) -> Trajectory:
     """The extents of the practised motion; the elbow starts three tenths of it later."""
     share, t = 0.7, learners.grid()
-    early, late = (
+    shoulder, elbow = (
         smooth_pick_and_place(draw.learnt, (t - wait) / share, 1.0)
         for wait in (0.0, (1 - share) * MOTION_SECONDS)
     )
-    pairs = zip(early, late, (1, share, share**2))
+    pairs = zip(shoulder, elbow, (1, share, share**2))
     return Trajectory(*(np.stack([a[..., 0], b[..., 1]], -1) / s for a, b, s in pairs))
 
 
@@ -185,23 +187,23 @@ def _after(draw, t, reference: Trajectory, asked: dict) -> dict:
     terms = RigidBodyTerms(learners.NAMES)
     taught = {
         "exact terms": learners.Terms(terms, draw),
-        "exact terms, slower": learners.Terms(terms, draw, 0.3 * learners._RATE),
-        "network, last layer": learners._last_layer(draw.untrained, draw),
-        "linear filter": learners._linear_filter(draw),
-        "memory": learners._Memory(draw),
+        "exact terms, slower": learners.Terms(terms, draw, 0.3 * learners.TERMS_RATE),
+        "network, last layer": learners.last_layer(draw.untrained, draw),
+        "linear filter": learners.linear_filter(draw),
+        "memory": learners.Memory(draw),
     }
-    learning._practise(draw, taught, reference, t)
-    found: dict = {}
+    learning.practise(draw, taught, reference, t)
+    by_motion: dict = {}
     for motion, (times, wanted) in asked.items():
         speed = {"in 2/3 of the time": 1.5, "in half the time": 2.0}.get(motion, 1.0)
         scaled = copy.deepcopy(taught["memory"].memory)
         scaled.torque = scaled.torque * speed**2
         every = {"none": draw.plain} | {k: x.controller(False) for k, x in taught.items()}
         every["memory, scaled"] = scaled
-        many = learning._repeated(wanted, len(every))
-        errors, _ = learning._trial(draw, list(every.values()), [1] * len(every), many, times)
-        found[motion] = dict(zip(every, errors))
-    return found
+        many = learning.repeated(wanted, len(every))
+        errors, _ = learning.trial(draw, list(every.values()), [1] * len(every), many, times)
+        by_motion[motion] = dict(zip(every, errors))
+    return by_motion
 
 
 @study

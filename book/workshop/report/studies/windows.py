@@ -13,13 +13,13 @@ from ddlib.setups import STATE_FEEDBACK, WINDOWS, split, train_windows
 from ddlib.simulation import LOG_STEP, Recording
 from workshop.report.code_hash import study
 from workshop.report.parity import learn
-from workshop.report.studies._table import _row
+from workshop.report.studies.table import errors_and_weights
 
 # Window sizes from the smallest that can see an acceleration up to 0.8 s
 _SIZES = (3, 5, 7, 11, 15, 21, 31, 41, 61, 81)
 
 
-def _acceleration_error(recording, width) -> float:
+def acceleration_error(recording, width) -> float:
     """RMS error of the least-squares acceleration over that of the true one, all joints."""
     taps = savitzky_golay(width, 2, LOG_STEP, degree=2)
     windows, _ = cases(recording, width)
@@ -38,11 +38,11 @@ def _window_sizes(members=6) -> dict:
     for width in _SIZES:
         model, history, _ = train_windows(STATE_FEEDBACK, recording, width, members)
         weights = model.weights
-        cell = {**_row(model, history, recording), "derailed": history.derailed}
+        cell = {**errors_and_weights(model, history, recording), "derailed": history.derailed}
         if width >= 5:
             cell["roughness, hidden"] = np.median(roughness(weights.hidden_weights), (-2, -1))
             cell["roughness, direct"] = np.median(roughness(weights.direct_weights), (-2, -1))
-        cell["acceleration error"] = _acceleration_error(split(recording)[0], width)
+        cell["acceleration error"] = acceleration_error(split(recording)[0], width)
         rows.append({"width": width, **cell})
     return {"members": members, "rows": rows}
 
@@ -55,7 +55,7 @@ def _hidden_units(members=6, width=21, units=(1, 2, 5, 10, 20, 40)) -> dict:
     for hidden in units:
         setup = replace(STATE_FEEDBACK, hidden=hidden, name=f"{hidden} hidden units")
         model, history, _ = train_windows(setup, recording, width, members)
-        cell = {**_row(model, history, recording), "derailed": history.derailed}
+        cell = {**errors_and_weights(model, history, recording), "derailed": history.derailed}
         rows.append({"units": hidden, **cell})
     return {"members": members, "width": width, "rows": rows}
 
@@ -109,13 +109,13 @@ def _memory(members=5) -> dict:
 
 def _capacity(weights, shuffled, decay) -> dict:
     """What the solver memorises in `_MEMORY_STEPS`, and how far from an optimum it was left."""
-    found = solve(weights, shuffled, decay=decay, steps=_MEMORY_STEPS, label=f"decay {decay:g}")
+    solution = solve(weights, shuffled, decay=decay, steps=_MEMORY_STEPS, label=f"decay {decay:g}")
     return {
-        "training": found.history.training[-1],
-        "course": np.median(found.history.training, 1),
-        "largest weight": found.model.weights.largest,
-        "gradient": found.gradient,
-        "converged": found.converged,
+        "training": solution.history.training[-1],
+        "course": np.median(solution.history.training, 1),
+        "largest weight": solution.model.weights.largest,
+        "gradient": solution.gradient,
+        "converged": solution.converged,
     }
 
 

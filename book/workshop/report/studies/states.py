@@ -10,7 +10,7 @@ from ddlib.metrics import rmss
 from workshop.report import results
 from workshop.report.code_hash import study
 from workshop.report.exact_states import (
-    _DESCENT,
+    DESCENT,
     EPOCHS,
     INITIAL,
     MOMENTUM,
@@ -25,7 +25,7 @@ from workshop.report.exact_states import (
 def _train(states, members, label="", **options):
     data = TrainingSet.from_arrays(states, torque(states))
     weights = Weights.random(members, 3, initial=options.pop("initial", INITIAL))
-    return train_ensemble(weights, data, label=f"state space{label}", **(_DESCENT | options))
+    return train_ensemble(weights, data, label=f"state space{label}", **(DESCENT | options))
 
 
 def _errors(model: TorqueModel, sets: dict) -> dict:
@@ -129,21 +129,21 @@ def _descend(samples, draws, hidden=paper.HIDDEN_UNITS, epochs=EPOCHS, first=100
         data, test = _data(samples, first + draw)
         weights = Weights.random(_DESCENT_MEMBERS, 3, hidden, initial=INITIAL, seed=10 * draw)
         label = f"{samples:,} samples, {hidden} units, descent {draw + 1} of {draws}"
-        options = _DESCENT | {"epochs": epochs}
+        options = DESCENT | {"epochs": epochs}
         histories.append(train_ensemble(weights, data, test=test, label=label, **options)[1])
     return histories
 
 
 def _solve(samples, draws, hidden=paper.HIDDEN_UNITS) -> dict:
     """Errors after `_STEPS` steps of the solver, and the gradients that it stopped with."""
-    found = []
+    solutions = []
     for draw in range(draws):
         data, test = _data(samples, 100 + draw)
         weights = Weights.random(1, 3, hidden, initial=INITIAL, seed=draw)
         label = f"{samples:,} samples, {hidden} units, solver {draw + 1} of {draws}"
-        found.append(solve(weights, data, test=test, steps=_STEPS, label=label))
-    errors = _ends([solution.history for solution in found])
-    return {**errors, "gradient": np.concatenate([solution.gradient for solution in found])}
+        solutions.append(solve(weights, data, test=test, steps=_STEPS, label=label))
+    errors = _ends([solution.history for solution in solutions])
+    return {**errors, "gradient": np.concatenate([solution.gradient for solution in solutions])}
 
 
 @study

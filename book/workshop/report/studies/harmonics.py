@@ -39,11 +39,11 @@ def _summary(model: TorqueModel, windows, states) -> dict:
         f = getattr(model.weights, attribute)
         if f.ndim != 4:
             raise ValueError(f"model must be an ensemble, got weights of shape {f.shape}")
-        names, heard = classify(f), followed(f, windows, states)
+        names, follows = classify(f), followed(f, windows, states)
         layers[layer] = {
             "classes": {name: (names == name).mean((1, 2)) for name in CLASSES},
-            "follow": {q: (heard.strongest == k).mean((1, 2)) for k, q in enumerate(QUANTITIES)},
-            "unique": np.median(heard.unique, (1, 2)),
+            "follow": {q: (follows.strongest == k).mean((1, 2)) for k, q in enumerate(QUANTITIES)},
+            "unique": np.median(follows.unique, (1, 2)),
         }
     return {**layers, "gains": gains(mean_gradient(model, windows), LOG_STEP)}
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beyond.control.windowed import WindowFeedforward
-from beyond.rivals.protocol import _derivative_filters
+from beyond.rivals.protocol import derivative_filters
 from ddlib._check import number
 from ddlib.control import PID, ComputedTorque, Feedforward, closed_loop, plant
 from ddlib.dynamics import Arm, end_point_error, jacobian
@@ -20,20 +20,20 @@ from ddlib.simulation import CONTROL_STEP, LOG_STEP, REST, Recording, follow
 from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS, Trajectory, pick_and_place, time_grid
 from workshop.report import results
 
-_WIDTH = 21  # samples of a window: the paper's best
-_POINTS = 7  # trajectories in a row of the square of extents
+WIDTH = 21  # samples of a window: the paper's best
+POINTS = 7  # trajectories in a row of the square of extents
 
 
-def _square_extents(points: int) -> np.ndarray:
+def square_extents(points: int) -> np.ndarray:
     """Extents of a square, degrees, shape (runs, 2); the elbow's change fastest."""
     edge = MAX_EXTENT_DEG * np.arange(1, points + 1) / points
     return np.stack(np.meshgrid(edge, edge, indexing="ij"), -1).reshape(-1, 2)
 
 
-_EXTENTS = _square_extents(_POINTS)
-_INSIDE = inside_hull(_EXTENTS)  # the hull of the training trajectories
-_FEWER = _EXTENTS.reshape(_POINTS, _POINTS, 2)[::2, ::2].reshape(-1, 2)
-_T = time_grid(CONTROL_STEP, REST)  # control samples, s
+EXTENTS = square_extents(POINTS)
+_INSIDE = inside_hull(EXTENTS)  # the hull of the training trajectories
+FEWER_EXTENTS = EXTENTS.reshape(POINTS, POINTS, 2)[::2, ::2].reshape(-1, 2)
+TIMES = time_grid(CONTROL_STEP, REST)  # control samples, s
 _START = 0.5  # s: what counts as the start of a motion
 _Model = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
@@ -44,7 +44,7 @@ def exact(setup: Setup, arm: Arm | None = None) -> _Model:
     return lambda q, qd, qdd: body.inverse_dynamics(q, qd, qdd) + setup.effects.friction_torque(qd)
 
 
-def _with_impulse(setup: Setup) -> _Model:
+def with_impulse(setup: Setup) -> _Model:
     """`exact`, with the impulse of each jump in velocity, within one control period."""
 
     def torque(q, qd, qdd):
@@ -56,9 +56,9 @@ def _with_impulse(setup: Setup) -> _Model:
     return torque
 
 
-def _through_window(torque: _Model, width: int = _WIDTH) -> WindowFeedforward:
+def through_window(torque: _Model, width: int = WIDTH) -> WindowFeedforward:
     """Equations of a state that see windows: a polynomial in each gives the state."""
-    filters = _derivative_filters(width, LOG_STEP)
+    filters = derivative_filters(width, LOG_STEP)
 
     def model(windows):
         return torque(*np.moveaxis(windows @ filters.T, -1, 0))
@@ -66,14 +66,14 @@ def _through_window(torque: _Model, width: int = _WIDTH) -> WindowFeedforward:
     return WindowFeedforward(model, width, step=LOG_STEP)
 
 
-def _networks(setup: Setup, count: int, width: int = _WIDTH, **options) -> list[WindowFeedforward]:
+def networks(setup: Setup, count: int, width: int = WIDTH, **options) -> list[WindowFeedforward]:
     """The first networks of a cell of Table 4-1 as feedforwards."""
     model = results.networks(width, setup.name)
     options = {"step": model.step, **options}
     return [WindowFeedforward(model[k].torque, width, **options) for k in range(count)]
 
 
-def _computed_torque(setup: Setup, arm: Arm | None = None) -> Callable:
+def computed_torque(setup: Setup, arm: Arm | None = None) -> Callable:
     """Computed torque with the reference's friction, as stiff as the feedback."""
     kp = np.asarray(setup.controller.kp) / np.diag(setup.arm.mass_matrix(np.zeros(2)))
     kd = 2 * np.sqrt(kp)
@@ -91,7 +91,7 @@ def _computed_torque(setup: Setup, arm: Arm | None = None) -> Callable:
 
 def rounded(extents_deg, seconds: float) -> Trajectory:
     """The paper's motions with corners averaged over a raised cosine of so many seconds."""
-    plan = pick_and_place(extents_deg, _T)
+    plan = pick_and_place(extents_deg, TIMES)
     half = round(number("seconds", seconds, 0.0, REST) / CONTROL_STEP / 2)
     if not half:
         return plan
@@ -107,13 +107,13 @@ def rounded(extents_deg, seconds: float) -> Trajectory:
     return Trajectory(smooth(plan.q), qd, np.gradient(qd, CONTROL_STEP, axis=-2))
 
 
-def _on_days(effects: Effects, setup: Setup, days) -> Effects:
+def on_days(effects: Effects, setup: Setup, days) -> Effects:
     """Effects with the encoder's zero of other days, which are the first axis of the runs."""
     zero = np.stack([setup.repeated(day).effects.encoder[0].angle for day in days])[:, None]
     return replace(effects, encoder=(EncoderZero(zero), *effects.encoder, EncoderZero(-zero)))
 
 
-def _planned(models, reference: Trajectory) -> np.ndarray:
+def torques_along(models, reference: Trajectory) -> np.ndarray:
     """Torques of several feedforwards along a reference, shape (models, ..., time, 2), N m."""
     return _time_first(np.stack([model(*reference) for model in models]))
 
@@ -130,13 +130,13 @@ def given(torque, feedback) -> Feedforward:
 
 def drive(setup: Setup, controller, reference, days, *, arm=None, effects=None) -> Recording:
     """Follow a reference on several days, which become the first axis of the runs."""
-    effects = _on_days(effects or setup.effects, setup, days)
+    effects = on_days(effects or setup.effects, setup, days)
     return follow(
-        arm or setup.arm, controller, reference, _T, effects=effects, duration=MOTION_SECONDS
+        arm or setup.arm, controller, reference, TIMES, effects=effects, duration=MOTION_SECONDS
     )
 
 
-def _driven(
+def drive_lines(
     setup: Setup, made: dict, reference: Trajectory, **changed
 ) -> tuple[Recording, dict[str, slice]]:
     """Recording of all lines ``{name: (torques, days)}``, and which part of it belongs to each."""
@@ -193,14 +193,16 @@ def score(arm: Arm, recording: Recording) -> _Score:
     )
 
 
-def _errors(setup: Setup, made: dict, reference: Trajectory, **changed) -> dict[str, np.ndarray]:
-    """Median end-point error over the runs on each day of each line, as of `_driven`, mm."""
-    log, parts = _driven(setup, made, reference, **changed)
+def median_errors(
+    setup: Setup, made: dict, reference: Trajectory, **changed
+) -> dict[str, np.ndarray]:
+    """Median end-point error over the runs on each day of each line, as of `drive_lines`, mm."""
+    log, parts = drive_lines(setup, made, reference, **changed)
     middle = np.median(score(setup.arm, log).whole, -1)
     return {name: middle[part] for name, part in parts.items()}
 
 
-def _told(found: _Score) -> dict:
+def median_scores(found: _Score) -> dict:
     """Medians over the square of scores ``(members, runs)``, by member, and a map of `whole`."""
     row = {name: np.median(values, -1) for name, values in found._asdict().items()}
     row["inside"] = np.median(found.whole[:, _INSIDE], -1)
@@ -229,23 +231,23 @@ def through_loop(system, torque) -> np.ndarray:
     """Joint errors (rad) that the linear loop makes of torques ``(..., time, 2)``, N m."""
     torque = np.asarray(torque)
     x = np.zeros((*torque.shape[:-2], system.nstates))
-    found = np.empty(torque.shape)
+    errors = np.empty(torque.shape)
     for k in range(torque.shape[-2]):
-        found[..., k, :] = x @ system.C.T
+        errors[..., k, :] = x @ system.C.T
         x = x @ system.A.T + torque[..., k, :] @ system.B.T
-    return found
+    return errors
 
 
-def _predicted(setup: Setup, torque, reference: Trajectory) -> np.ndarray:
+def predicted_error(setup: Setup, torque, reference: Trajectory) -> np.ndarray:
     """End-point error that the linear loop and the plan's Jacobian predict, RMS in mm."""
     system = linear_loop(setup, float(reference.q[..., 1].mean()))
-    moving = (_T >= 0) & (_T < MOTION_SECONDS)
-    error = through_loop(system, torque - _with_impulse(setup)(*reference))[..., moving, :]
+    moving = (TIMES >= 0) & (TIMES < MOTION_SECONDS)
+    error = through_loop(system, torque - with_impulse(setup)(*reference))[..., moving, :]
     gap = np.einsum("...ij,...j->...i", jacobian(setup.arm, reference.q[..., moving, :]), error)
     return 1e3 * np.sqrt((gap**2).sum(-1).mean(-1))
 
 
-def _logged_error(setup: Setup, model: TorqueModel, run: Recording) -> np.ndarray:
+def error_of_logged(setup: Setup, model: TorqueModel, run: Recording) -> np.ndarray:
     """What each member's error on a recorded motion would do to the hand, RMS in mm."""
     moving = run.motion
     missed = model.torque(sliding_windows(run.q, model.weights.width, moving)) - run.tau[moving]

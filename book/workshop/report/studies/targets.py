@@ -10,7 +10,7 @@ from scipy.ndimage import gaussian_filter1d
 from ddlib.learning import Weights, surrogates
 from ddlib.simulation import LOG_STEP
 from workshop.report.code_hash import study
-from workshop.report.studies.nulls import TRIAL, _counted, _Trial
+from workshop.report.studies.nulls import TRIAL, FilterTrial, names_counted
 
 _TIMES = (0.02, 0.05, 0.1, 0.3, 1.0)  # s, time constants of the Gaussian processes
 
@@ -24,7 +24,7 @@ _INITIAL = (0.01, 0.03, 0.1, 0.3, 1.0)  # sizes of the initial weights
 class _Targets:
     """Targets ``(draws, runs, time, joint)``, with the mean and the spread of a trial's torques."""
 
-    def __init__(self, trial: _Trial, draws: int):
+    def __init__(self, trial: FilterTrial, draws: int):
         self.trial, self.draws = trial, draws
         x = trial.windows.reshape(len(trial.windows), -1)
         self.along = np.linalg.qr(np.column_stack([np.ones(len(x)), x]))[0]
@@ -42,11 +42,11 @@ class _Targets:
 
     def process(self, time: float) -> np.ndarray:
         """Gaussian processes with a correlation of exp(-(s / time)² / 2) at a lag of s seconds."""
-        runs, count, joints = self.trial.torques.shape
+        runs, samples, joints = self.trial.torques.shape
         rng = np.random.default_rng(round(1000 * time))
-        noise = rng.normal(size=(self.draws, runs, 3 * count, joints))
+        noise = rng.normal(size=(self.draws, runs, 3 * samples, joints))
         smooth = gaussian_filter1d(noise, time / np.sqrt(2) / LOG_STEP, axis=2)
-        return self.scaled(smooth[:, :, count : 2 * count])
+        return self.scaled(smooth[:, :, samples : 2 * samples])
 
     def surrogates(self, kind: str) -> np.ndarray:
         return self.scaled(surrogates(kind, self.trial.torques, self.draws))
@@ -82,10 +82,11 @@ class _Targets:
         """Networks of each target, all trained as one ensemble, and what became of them."""
         wanted = np.concatenate(list(targets.values()))
         weights, start = self.trial.train(wanted, seed)
-        found = self.described(weights, start, wanted)
+        described = self.described(weights, start, wanted)
         parts = np.split(np.arange(len(wanted)), len(targets))
         return {
-            name: {what: x[part] for what, x in found.items()} for name, part in zip(targets, parts)
+            name: {what: x[part] for what, x in described.items()}
+            for name, part in zip(targets, parts)
         }
 
     def described(self, weights: Weights, start: Weights, wanted) -> dict:
@@ -97,7 +98,7 @@ class _Targets:
         f, before = weights.hidden_weights, start.hidden_weights
         given = self.trial.model(weights).torque(self.trial.windows)
         left = wanted.reshape(given.shape) - given
-        counts = {"": _counted(f), "added, ": _counted(f - before)}
+        counts = {"": names_counted(f), "added, ": names_counted(f - before)}
         variance = wanted.var((1, 2))
         return {
             "explained": (self.fitted(wanted).var((1, 2)) / variance).mean(-1),
@@ -112,23 +113,23 @@ def _targets(members: int = 10, width: int = 21, epochs: int = TRIAL.epochs) -> 
     """Names of hidden filters by what was learnt, and by the size of the initial weights."""
     setup = replace(TRIAL, epochs=epochs)
     recording = setup.record()
-    made = _Targets(_Trial(setup, recording, width), members)
-    row = made.row()
+    targets = _Targets(FilterTrial(setup, recording, width), members)
+    row = targets.row()
     mixed = {
         (name, share): target
         for name in _MIXED
-        for share, target in zip(_SHARES, made.mixtures(row[name]))
+        for share, target in zip(_SHARES, targets.mixtures(row[name]))
     }
-    found = made.learnt({**row, **mixed}, 0)
+    learnt = targets.learnt({**row, **mixed}, 0)
     starts = [
-        _Targets(_Trial(replace(setup, initial=size), recording, width), members).learnt(
+        _Targets(FilterTrial(replace(setup, initial=size), recording, width), members).learnt(
             {name: row[name] for name in _MIXED}, 0
         )
         for size in _INITIAL
     ]
     return {
         **{"members": members, "width": width, "shares": _SHARES, "initial": _INITIAL},
-        "targets": {name: found[name] for name in row},
-        "mixed": {name: [found[name, share] for share in _SHARES] for name in _MIXED},
+        "targets": {name: learnt[name] for name in row},
+        "mixed": {name: [learnt[name, share] for share in _SHARES] for name in _MIXED},
         "by initial": {name: [each[name] for each in starts] for name in _MIXED},
     }

@@ -26,7 +26,7 @@ from workshop.report import results
 from workshop.report.code_hash import study
 
 
-def _row(model, history, recording) -> dict:
+def errors_and_weights(model, history, recording) -> dict:
     """What is written of trained networks: errors in training and test, the largest weights."""
     measured = errors(model, recording)
     return {
@@ -38,7 +38,7 @@ def _row(model, history, recording) -> dict:
 
 
 def _cell(setup, recording, width, members, snapshots=()):
-    model, history, kept = train_windows(setup, recording, width, members, snapshots=snapshots)
+    model, history, weights = train_windows(setup, recording, width, members, snapshots=snapshots)
     cell = {
         "errors": errors(model, recording).named(),
         "best test": history.best_test,
@@ -51,25 +51,25 @@ def _cell(setup, recording, width, members, snapshots=()):
             "test": history.test.T,
         },
     }
-    return cell, model, kept
+    return cell, model, weights
 
 
 @study
 def _table_4_1(members=25) -> dict:
     """Table 4-1 for the readings of the controller; the networks go into ``.npz`` files."""
-    table = {}
+    cells = {}
     for setup in SETUPS.values():
         recording = setup.record()
-        table[setup.name] = {}
+        cells[setup.name] = {}
         for width in WINDOWS:
-            followed = COURSE if setup is STATE_FEEDBACK else ()
-            cell, model, kept = _cell(setup, recording, width, members, followed)
-            table[setup.name][str(width)] = cell
+            epochs = COURSE if setup is STATE_FEEDBACK else ()
+            cell, model, weights = _cell(setup, recording, width, members, epochs)
+            cells[setup.name][str(width)] = cell
             model.save(results._networks_path(setup.name, width))
-            if kept:
-                course = Weights.stack([kept[epoch][:2] for epoch in COURSE])
+            if weights:
+                course = Weights.stack([weights[epoch][:2] for epoch in COURSE])
                 TorqueModel(course, model.inputs, model.outputs).save(results._course_path(width))
-    return {"members": members, "setups": table}
+    return {"members": members, "setups": cells}
 
 
 def _ablations() -> dict:
@@ -101,7 +101,7 @@ def _ablations() -> dict:
 
 
 def _on_days(setup, days, networks, whiten=True) -> dict:
-    """By window what `_row` tells, each of shape ``(days, networks)`` (`Setup.repeated`)."""
+    """By window `errors_and_weights`, each of shape ``(days, networks)`` (`Setup.repeated`)."""
     cells = {str(w): [] for w in WINDOWS}
     for day in range(1, days + 1):
         recording = setup.repeated(day).record()
@@ -110,7 +110,9 @@ def _on_days(setup, days, networks, whiten=True) -> dict:
                 setup, recording, w, networks, seed=100 * day, whiten=whiten, progress=False
             )
             ends = _saturated(model, recording, w)
-            cells[str(w)].append({**_row(model, history, recording), "saturated": ends})
+            cells[str(w)].append(
+                {**errors_and_weights(model, history, recording), "saturated": ends}
+            )
     return {w: {key: [one[key] for one in cell] for key in cell[0]} for w, cell in cells.items()}
 
 
@@ -144,14 +146,14 @@ def _whitening(days=5, networks=2, members=8, width=41) -> dict:
         "plain, twice the steps": (replace(JOINT_DAMPING, steps=2 * JOINT_DAMPING.steps), False),
         "descent": (replace(JOINT_DAMPING, steps=0, decay=0.0), True),
     }
-    found = {}
+    directions = {}
     for name, (setup, whiten) in ways.items():
         model, history, _ = train_windows(setup, recording, width, members, whiten=whiten)
         change = along.energy(model.weights, start) / along.energy(start)
         hidden = model.weights.hidden_weights
         rough = {"trained": hidden, "change": hidden - start.hidden_weights}
-        found[name] = {
-            **_row(model, history, recording),
+        directions[name] = {
+            **errors_and_weights(model, history, recording),
             "learnt": (change > 1).sum(-1),
             "change over start": np.sqrt(np.median(change, 0)),
             **{f"roughness, {k}": np.median(roughness(w), (-2, -1)) for k, w in rough.items()},
@@ -159,7 +161,7 @@ def _whitening(days=5, networks=2, members=8, width=41) -> dict:
     return {
         **{"days": days, "networks": networks, "members": members, "width": width},
         "variance": (along.values / along.values[0]) ** 2,
-        "directions": found,
+        "directions": directions,
         "plain": _on_days(JOINT_DAMPING, days, networks, whiten=False),
     }
 
