@@ -12,13 +12,13 @@ from ddlib.analysis import (
     LAYERS,
     calibrated,
     classify,
-    heard,
     mean_gradient,
     refitted,
     roughness,
     saturated,
     transition_width,
     unit_inputs,
+    unit_responses,
 )
 from ddlib.learning import (
     MATCHED,
@@ -169,7 +169,7 @@ def _counted(f) -> dict:
 
 def _responded(inputs, states) -> dict:
     """Medians over the units of a network of what they follow, and how many follow what best."""
-    found = heard(inputs, states)
+    found = unit_responses(inputs, states)
     best = found.strongest
     return {
         "alone": np.median(found.alone, 1),
