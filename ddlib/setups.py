@@ -221,7 +221,7 @@ def train_windows(
 
 
 @dataclass(frozen=True)
-class _Errors:
+class AppendixErrors:
     """RMSS on an Appendix I recording, in each way the paper may have meant."""
 
     training: np.ndarray  #: Pooled, divided by the training set's own deviation.
@@ -236,7 +236,7 @@ class _Errors:
         return {_NAMES[field.name]: getattr(self, field.name) for field in fields(self)}
 
 
-# What results and tables call the fields of `_Errors`
+# What results and tables call the fields of `AppendixErrors`
 _NAMES = {
     "training": "training",
     "test": "test",
@@ -247,7 +247,7 @@ _NAMES = {
 }
 
 
-def errors(model: TorqueModel, recording: Recording) -> _Errors:
+def errors(model: TorqueModel, recording: Recording) -> AppendixErrors:
     """RMSS of a model on an Appendix I recording, one value per member each.
 
     Of what is returned `training` and `test` are as in Table 4-1; `shoulder`, `elbow`, `desired`
@@ -262,7 +262,7 @@ def errors(model: TorqueModel, recording: Recording) -> _Errors:
     desired = sliding_windows(test.reference.q, width, test.motion)
     predicted = model.torque(x6)
     by_joint = rmss(predicted, y6, pooled=False)
-    return _Errors(
+    return AppendixErrors(
         training=rmss(model.torque(x), y),
         test=rmss(predicted, y6),
         by_training_deviation=rmss(predicted, y6, scale=y.std(0)),

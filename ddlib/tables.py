@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _POWER = re.compile(r"(?<![\w.])(-?)(\d(?:\.\d+)?)e([-+]\d+)\b")
 _MINUS = re.compile(r"(?<![\w.)\-])-(?=\.?\d)|(?<=[(^])-(?=\w)")
 _GLUE = "application/papermill.record/"  # before the MIME type of what only the prose quotes
@@ -34,7 +34,7 @@ def scientific(value, digits: int = 1) -> str:
     if value == 0:
         return "0"
     first, _, power = f"{value:.{digits - 1}e}".partition("e")
-    power = "10" + str(int(power)).translate(_SUPERSCRIPT)
+    power = "10" + str(int(power)).translate(SUPERSCRIPT)
     return {"1": power, "-1": f"-{power}"}.get(first, f"{first} · {power}")
 
 

@@ -23,13 +23,13 @@ from .following import (
     LAYERS as LAYERS,
     QUANTITIES as QUANTITIES,
     explained as explained,
-    followed as followed,
+    filter_responses as filter_responses,
     gains as gains,
     mean_gradient as mean_gradient,
 )
 from .hidden_units import (
     ablation as ablation,
-    match as match,
+    matched_units as matched_units,
     net_inputs as net_inputs,
     refitted as refitted,
     saturated as saturated,
@@ -41,8 +41,8 @@ from .noise import (
 )
 from .response import (
     calibrated as calibrated,
-    heard as heard,
     unit_inputs as unit_inputs,
+    unit_responses as unit_responses,
 )
 from .sensitivity import (
     input_shares as input_shares,

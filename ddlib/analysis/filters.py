@@ -13,7 +13,7 @@ import numpy as np
 from ddlib._check import finite_array, integer, number, one_of
 
 
-class _Decomposition(NamedTuple):
+class Decomposition(NamedTuple):
     """The parts of a weight function; ``constant + even + odd`` is the function itself."""
 
     constant: np.ndarray  # of shape (..., 1)
@@ -25,7 +25,7 @@ class _Decomposition(NamedTuple):
         return self.constant + self.even + self.odd
 
 
-def _odd_width(f) -> np.ndarray:
+def with_centre(f) -> np.ndarray:
     """Weight functions with a centre; a ValueError if the last axis has an even length or 1."""
     f = finite_array("f", f)
     if f.ndim == 0 or f.shape[-1] < 3 or f.shape[-1] % 2 == 0:
@@ -33,21 +33,21 @@ def _odd_width(f) -> np.ndarray:
     return f
 
 
-def decompose(f, convention: str = "symmetric") -> _Decomposition:
+def decompose(f, convention: str = "symmetric") -> Decomposition:
     """Split weight functions ``(..., width)`` into constant, even and odd parts about x = 0.
 
     With the "symmetric" `convention` the mean is taken out of the even part, so that the odd part
     is odd. "paper": as printed in section 5.1, where it is taken out of the *odd* part: the sum is
     the same, but "odd" is then not odd and "even" keeps the mean.
     """
-    f = _odd_width(f)
+    f = with_centre(f)
     one_of("convention", convention, ("symmetric", "paper"))
     mirrored = f[..., ::-1]
     constant = f.mean(-1, keepdims=True)
     even, odd = (f + mirrored) / 2, (f - mirrored) / 2
     if convention == "paper":
-        return _Decomposition(constant, even, odd - constant)
-    return _Decomposition(constant, even - constant, odd)
+        return Decomposition(constant, even, odd - constant)
+    return Decomposition(constant, even - constant, odd)
 
 
 DERIVATIVES = ("position", "velocity", "acceleration", "jerk")
@@ -66,7 +66,7 @@ def basis(width: int) -> np.ndarray:
 
 def content(f) -> np.ndarray:
     """Components of weight functions of 5 samples or more along `basis`, ``(..., 4)``."""
-    f = _odd_width(f)
+    f = with_centre(f)
     if f.shape[-1] < 5:
         raise ValueError(
             f"f must have 5 samples or more for four derivatives, got {f.shape[-1]}: take a wider "
@@ -80,7 +80,7 @@ def shares(f) -> np.ndarray:
 
     Position, velocity, acceleration, jerk, and the rest, which no cubic explains; they sum to 1.
     """
-    f = _odd_width(f)
+    f = with_centre(f)
     energy = (f**2).sum(-1, keepdims=True)
     if (energy == 0).any():
         raise ValueError("f must not be zero everywhere")
@@ -88,7 +88,7 @@ def shares(f) -> np.ndarray:
     return np.concatenate([parts, np.clip(1 - parts.sum(-1, keepdims=True), 0, None)], -1)
 
 
-_NAMED_CLASSES = (
+NAMED_CLASSES = (
     "velocity",
     "acceleration",
     "jerk",
@@ -96,7 +96,7 @@ _NAMED_CLASSES = (
     "acceleration + jerk",
 )
 _OTHER_MIX, _NOT_ANALYSABLE = "other mix", "not analysable"
-CLASSES = (*_NAMED_CLASSES, _OTHER_MIX, _NOT_ANALYSABLE)
+CLASSES = (*NAMED_CLASSES, _OTHER_MIX, _NOT_ANALYSABLE)
 """Names that `classify` gives."""
 
 _PURE = 0.8  # share of the cubic part's energy from which one derivative, or two, give the name
@@ -115,13 +115,13 @@ def classify(f) -> np.ndarray:
     varying = 1 - share[..., 0]
     rough = (share[..., 4] > (1 - _SMOOTH) * varying) | (varying < 1e-12)
     conditions = [rough, *(x >= _PURE for x in (v, a, j, v + a, a + j))]
-    return np.select(conditions, [_NOT_ANALYSABLE, *_NAMED_CLASSES], _OTHER_MIX)
+    return np.select(conditions, [_NOT_ANALYSABLE, *NAMED_CLASSES], _OTHER_MIX)
 
 
 def purest(f, name: str) -> np.ndarray:
     """The weight function of a class with the largest share of the named derivatives."""
     one_of("name", name, CLASSES)
-    f = _odd_width(f)
+    f = with_centre(f)
     f = f.reshape(-1, f.shape[-1])
     share = np.moveaxis(shares(f), -1, 0)
     named = [share[DERIVATIVES.index(n)] for n in name.split(" + ") if n in DERIVATIVES]
@@ -137,7 +137,7 @@ def upright(f) -> np.ndarray:
 
     A hidden unit and its negative are the same unit, so the sign is free.
     """
-    f = _odd_width(f)
+    f = with_centre(f)
     parts = content(f)[..., 1:]
     strongest = np.take_along_axis(parts, np.abs(parts).argmax(-1)[..., None], -1)
     return np.where(strongest < 0, -f, f)
@@ -148,7 +148,7 @@ def roughness(f) -> np.ndarray:
 
     0 for a straight line, about 1 for white noise, more for an alternating one.
     """
-    f = _odd_width(f)
+    f = with_centre(f)
     centred = f - f.mean(-1, keepdims=True)
     energy = (centred**2).mean(-1)
     second = (np.diff(f, 2, axis=-1) ** 2).mean(-1)
@@ -182,7 +182,7 @@ def frequency_response(f, frequencies, step: float) -> np.ndarray:
 
     Frequencies are at most half the sampling rate: above it samples do not tell them apart.
     """
-    f, frequencies = _odd_width(f), finite_array("frequencies", frequencies)
+    f, frequencies = with_centre(f), finite_array("frequencies", frequencies)
     number("step", step, 0.0, open_low=True)
     if frequencies.ndim > 1:
         raise ValueError(f"frequencies must be one number or a row, got shape {frequencies.shape}")

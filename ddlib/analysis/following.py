@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ddlib._check import finite_array, number, shaped, told
-from ddlib.analysis.filters import DERIVATIVES, _odd_width
+from ddlib.analysis.filters import DERIVATIVES, with_centre
 from ddlib.learning import TorqueModel
 
 QUANTITIES = DERIVATIVES[:3]
@@ -39,7 +39,7 @@ def _explained(outputs, signals) -> np.ndarray:
     return np.clip(1 - (left**2).sum(0) / (outputs**2).sum(0), 0, 1)
 
 
-class _Responses(NamedTuple):
+class Responses(NamedTuple):
     """What the outputs of filters follow, along the last axis by `QUANTITIES`."""
 
     alone: np.ndarray  # squared correlation with each quantity
@@ -52,7 +52,7 @@ class _Responses(NamedTuple):
         return self.alone.argmax(-1)
 
 
-def followed(f, windows, states) -> _Responses:
+def filter_responses(f, windows, states) -> Responses:
     """What the filters of units follow, each joint's filter by itself; leading shape (..., joint).
 
     `f` are weights along the windows of the joints, ``(..., joint, width)``; `windows` hold the
@@ -75,7 +75,7 @@ def followed(f, windows, states) -> _Responses:
         without = np.stack([_explained(outputs, signals[:, two]) for two in others], -1)
         by_joint.append((alone, np.clip(together[:, None] - without, 0, 1), together))
     lead = f.shape[:-2]
-    return _Responses(
+    return Responses(
         *(
             np.stack([x.reshape(*lead, *x.shape[1:]) for x in joints], len(lead))
             for joints in zip(*by_joint)
@@ -159,7 +159,7 @@ def gains(f, step: float) -> np.ndarray:
     -------
     ndarray, shape (..., 3)
     """
-    f = _odd_width(f)
+    f = with_centre(f)
     number("step", step, 0.0, open_low=True)
     x = step * (np.arange(f.shape[-1]) - f.shape[-1] // 2)
     return np.stack([f.sum(-1), f @ x, f @ x**2 / 2], -1)

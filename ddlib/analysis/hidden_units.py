@@ -81,7 +81,7 @@ def refitted(features, torque, held_out, answer) -> np.ndarray:
     return np.array([rmss(x @ factors, torque), rmss(new @ factors, answer)])
 
 
-def match(first, second) -> tuple[np.ndarray, np.ndarray]:
+def matched_units(first, second) -> tuple[np.ndarray, np.ndarray]:
     """Pair the units of two networks by their activities ``(cases, hidden)`` on the same cases.
 
     The pairs maximise the sum of absolute correlations (Hungarian algorithm): a unit and its mirror

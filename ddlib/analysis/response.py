@@ -11,12 +11,12 @@ import numpy as np
 from scipy.linalg import orth
 
 from ddlib._check import finite_array, like
-from ddlib.analysis.following import _Responses, gains, mean_gradient
+from ddlib.analysis.following import Responses, gains, mean_gradient
 from ddlib.analysis.hidden_units import net_inputs
 from ddlib.learning import TorqueModel
 
 
-def heard(outputs, states) -> _Responses:
+def unit_responses(outputs, states) -> Responses:
     """R² of quantities ``(cases, joint, quantities)`` for signals ``(..., cases, units)``.
 
     Alone is of both joints; unique: by how much R² on all falls without it (semi-partial).
@@ -44,7 +44,7 @@ def heard(outputs, states) -> _Responses:
     less = np.stack([share([i for i in range(count) if i != k]) for k in range(count)], -1)
     unique = np.clip(together[:, None] - less, 0, 1)
     shape = np.moveaxis(outputs, -2, 0).shape[1:]
-    return _Responses(
+    return Responses(
         alone.reshape(*shape, count), unique.reshape(*shape, count), together.reshape(shape)
     )
 
@@ -57,14 +57,14 @@ def unit_inputs(model: TorqueModel, windows) -> dict[str, np.ndarray]:
     return {"hidden": net_inputs(model, windows), "direct": direct}
 
 
-class _Calibrated(NamedTuple):
+class PhysicalGains(NamedTuple):
     """Stiffness (N m/rad), damping (N m s/rad), inertia (kg m^2), ``(..., output, joint, 3)``."""
 
     direct: np.ndarray  # through the direct weights alone
     whole: np.ndarray  # through all of the network, averaged over cases
 
 
-def calibrated(model: TorqueModel, windows, step: float) -> _Calibrated:
+def calibrated(model: TorqueModel, windows, step: float) -> PhysicalGains:
     """Gains of networks in physical units, from their torques' gradient averaged over windows.
 
     `step` is the sampling period of the windows, s.
@@ -75,4 +75,4 @@ def calibrated(model: TorqueModel, windows, step: float) -> _Calibrated:
     slope = (output * (1 - output)).mean(-2)  # of the whole network's outputs
     scale = model.inputs.gain[:, None] / model.outputs.gain[:, None, None]
     direct = slope[..., None, None] * weights.direct_weights * scale
-    return _Calibrated(gains(direct, step), gains(mean_gradient(model, windows), step))
+    return PhysicalGains(gains(direct, step), gains(mean_gradient(model, windows), step))

@@ -135,7 +135,7 @@ def _parts(joints, kp, ki, kd, period, delay):
     return F, command, torque, of_law, (kp + at_once, reference)
 
 
-class _Margins(NamedTuple):
+class Margins(NamedTuple):
     """How far a stable loop is from instability."""
 
     phase_deg: float  #: Angle in degrees that the loop may lose at its crossover.
@@ -144,7 +144,7 @@ class _Margins(NamedTuple):
     lower_gain: float  #: Factor to which the gain may fall; 0 without a limit.
 
 
-def margins(loop) -> _Margins:
+def margins(loop) -> Margins:
     """Gain and phase margins of an `opened_loop` or a `loop_gain`, by python-control.
 
     The loop has one input and one output, in continuous time or, with a `dt`, sampled.
@@ -177,7 +177,7 @@ def margins(loop) -> _Margins:
     if period:
         crossover = 2 / period * np.arctan(crossover * period / 2)
     upper, lower = min(gains[gains > 1], default=np.inf), max(gains[gains < 1], default=0.0)
-    return _Margins(float(phases[k]), float(crossover), float(upper), float(lower))
+    return Margins(float(phases[k]), float(crossover), float(upper), float(lower))
 
 
 def proportional_limit(inertia, viscous, period) -> float:

@@ -8,8 +8,8 @@ from .arm import (
     with_load as with_load,
 )
 from .costs import (
-    count as count,
-    table as table,
+    count_operations as count_operations,
+    operations_table as operations_table,
 )
 from .counting import (
     Operations as Operations,
@@ -25,7 +25,7 @@ from .formulations import (
 )
 from .joints import (
     DD_ARM_II_IN_SPACE as DD_ARM_II_IN_SPACE,
-    hand as hand,
+    hand_position as hand_position,
     inertial_parameters as inertial_parameters,
     locked as locked,
     mass_matrix as mass_matrix,

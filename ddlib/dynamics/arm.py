@@ -115,7 +115,7 @@ class Arm:
 
         ``coupling`` is that of the off-diagonal inertia.
         """
-        q, qd, qdd = _checked_state(q, qd, qdd)
+        q, qd, qdd = checked_state(q, qd, qdd)
         c2, h = np.cos(q[..., 1]), self.b * np.sin(q[..., 1])
         m12 = self.d + self.b * c2
         v1, v2 = qd[..., 0], qd[..., 1]
@@ -170,7 +170,7 @@ class Arm:
 
         That torque is linear in these is what identification rests on (An 1988; Khosla 1986).
         """
-        q, qd, qdd = _checked_state(q, qd, qdd)
+        q, qd, qdd = checked_state(q, qd, qdd)
         c2, s2 = np.cos(q[..., 1]), np.sin(q[..., 1])
         (v1, v2), (a1, a2) = np.moveaxis(qd, -1, 0), np.moveaxis(qdd, -1, 0)
         s1, s12, zero = np.sin(q[..., 0]), np.sin(q[..., 0] + q[..., 1]), np.zeros_like(a1 * c2)
@@ -206,7 +206,7 @@ def with_load(arm: Arm, mass: float) -> Arm:
     )
 
 
-def _checked_state(q, qd, qdd, joints: int = 2) -> tuple[np.ndarray, ...]:
+def checked_state(q, qd, qdd, joints: int = 2) -> tuple[np.ndarray, ...]:
     """Checked angles, velocities and accelerations, broadcast against each other."""
     state = (("q", q), ("qd", qd), ("qdd", qdd))
     return np.broadcast_arrays(*(finite_array(name, x, joints) for name, x in state))

@@ -20,7 +20,7 @@ from ddlib.dynamics.serial import PUMA_560, SerialArm
 KNOWLEDGE = ("nothing", "zeros", "arm")
 
 
-class _Published(NamedTuple):
+class PublishedCount(NamedTuple):
     """A count in the literature, as polynomials in the number of joints, highest power first."""
 
     multiplications: tuple[float, ...]
@@ -32,13 +32,13 @@ class _Published(NamedTuple):
 # For arms of `n` general revolute joints. The first polynomial for multiplications gives 67,143 for
 # six joints where the same table prints 66,271; the others agree.
 PUBLISHED = {
-    "Lagrange-Euler": _Published(
+    "Lagrange-Euler": PublishedCount(
         (32 + 1 / 2, 86 + 5 / 12, 171 + 1 / 4, 53 + 1 / 3, -128),
         (25, 66 + 1 / 3, 129 + 1 / 2, 42 + 1 / 3, -96),
         Operations(66271, 51548),
         "Hollerbach 1980, read in Corke 2002, Table 1",
     ),
-    "Newton-Euler": _Published(
+    "Newton-Euler": PublishedCount(
         (150, -48), (131, -48), Operations(852, 738), "Hollerbach 1980, read in Corke 2002, Table 1"
     ),
 }
@@ -47,7 +47,9 @@ PUBLISHED_CUSTOMISED = Operations(224, 174)
 
 
 @cache
-def count(formulation: Callable, arm: SerialArm, knowledge: str = "nothing") -> Operations:
+def count_operations(
+    formulation: Callable, arm: SerialArm, knowledge: str = "nothing"
+) -> Operations:
     """Operations of one evaluation of an arm's torques, by `newton_euler` or another formulation.
 
     `knowledge` says what is known off-line: "nothing", the "zeros" of the method, or also the
@@ -85,7 +87,7 @@ def count_closed_form(
     return tape.needed(torques) if shared else tape.executed
 
 
-def table(joints: Iterable[int], link: Link) -> dict[str, dict[int, Operations]]:
+def operations_table(joints: Iterable[int], link: Link) -> dict[str, dict[int, Operations]]:
     """Operations ``{formulation: {joints: ...}}`` of planar arms and of the `PUMA_560`."""
     every("joints", joints, "integer")
     like("link", link, "Link")
@@ -96,14 +98,16 @@ def table(joints: Iterable[int], link: Link) -> dict[str, dict[int, Operations]]
 
     puma = PUMA_560.first
     ways = {
-        "Lagrange-Euler, general": lambda n: count(lagrange_euler, puma(n)),
-        "recursive Lagrange, general": lambda n: count(recursive_lagrange, puma(n)),
-        "Newton-Euler, general": lambda n: count(newton_euler, puma(n)),
-        "Newton-Euler, zeros skipped": lambda n: count(newton_euler, puma(n), "zeros"),
-        "Newton-Euler, customised": lambda n: count(newton_euler, puma(n), "arm"),
+        "Lagrange-Euler, general": lambda n: count_operations(lagrange_euler, puma(n)),
+        "recursive Lagrange, general": lambda n: count_operations(recursive_lagrange, puma(n)),
+        "Newton-Euler, general": lambda n: count_operations(newton_euler, puma(n)),
+        "Newton-Euler, zeros skipped": lambda n: count_operations(newton_euler, puma(n), "zeros"),
+        "Newton-Euler, customised": lambda n: count_operations(newton_euler, puma(n), "arm"),
         "closed form, planar, as printed": lambda n: count_closed_form([link] * n, False),
         "closed form, planar, shared": lambda n: count_closed_form([link] * n, True),
-        "Newton-Euler, planar, customised": lambda n: count(newton_euler, planar(n), "arm"),
+        "Newton-Euler, planar, customised": lambda n: count_operations(
+            newton_euler, planar(n), "arm"
+        ),
     }
     return {name: {n: way(n) for n in joints} for name, way in ways.items()}
 

@@ -16,7 +16,7 @@ _MAX_LINKS = 6
 
 
 @dataclass(frozen=True)
-class _Derivation:
+class Derivation:
     """The dynamics of a planar arm in symbols; `derive` makes it."""
 
     q: tuple  #: Angles of the joints; `qd` and `qdd` are velocities and accelerations.
@@ -61,7 +61,7 @@ class _Derivation:
 
 
 @cache
-def derive(links: int, gravity: bool = False) -> _Derivation:
+def derive(links: int, gravity: bool = False) -> Derivation:
     """Derive the torques of a planar arm of 1 to 6 links from its energy.
 
     With `gravity` the plane is vertical, and angles count from hanging straight down. Link k turns
@@ -96,7 +96,7 @@ def derive(links: int, gravity: bool = False) -> _Derivation:
         lagrangian += sum(s * sp.cos(sum(q[: i + 1])) for i, s in enumerate(falls))
         base |= falls
     torque = tuple(_lagrange(lagrangian, i, q, qd, qdd) for i in range(links))
-    return _Derivation(tuple(q), tuple(qd), tuple(qdd), base, lagrangian, torque)
+    return Derivation(tuple(q), tuple(qd), tuple(qdd), base, lagrangian, torque)
 
 
 def _lagrange(lagrangian, i, q, qd, qdd):

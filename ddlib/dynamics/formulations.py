@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 
-class _LinkConstants(NamedTuple):
+class LinkConstants(NamedTuple):
     """What a formulation needs to know of a link, in Denavit-Hartenberg's frames."""
 
     cos_twist: float
@@ -27,7 +27,7 @@ class _LinkConstants(NamedTuple):
     second_moments: list  # 4 x 4, integral of r r' over the mass, with r = (x, y, z, 1)
 
 
-class _Constants(NamedTuple):
+class ArmConstants(NamedTuple):
     """The links of an arm, and the acceleration of its base against gravity (m/s^2)."""
 
     links: list
@@ -78,7 +78,7 @@ def lagrange_euler(constants, q, qd, qdd, zero=0.0, one=1.0) -> list:
     centre. Each product in ``D_ijk`` is done anew, as in programs that Hollerbach (1980) counts.
     """
     links, base = constants
-    first, second = _sweeps([_link_frame(link, x, zero, one) for link, x in zip(links, q)], zero)
+    first, second = _sweeps([link_frame(link, x, zero, one) for link, x in zip(links, q)], zero)
     inertia = {}
     for p, i in first:
         weighted = _product(first[p, i], links[p].second_moments)
@@ -173,7 +173,7 @@ def _rotation(link, angle, zero):
     return [[c, -s * ct, s * st], [s, c * ct, -c * st], [zero, st, ct]]
 
 
-def _link_frame(link, angle, zero, one):
+def link_frame(link, angle, zero, one):
     """Orientation and origin of a link's frame in the one before, 4 x 4."""
     turn = _rotation(link, angle, zero)
     origin = (link.length * turn[0][0], link.length * turn[1][0], link.offset)

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from ddlib._check import finite_array, integer, like
-from ddlib.dynamics.arm import STANDARD_GRAVITY, _checked_state
-from ddlib.dynamics.formulations import _link_frame
+from ddlib.dynamics.arm import STANDARD_GRAVITY, checked_state
+from ddlib.dynamics.formulations import link_frame
 from ddlib.dynamics.serial import SerialArm, SpatialLink
 
 _PER_LINK = 10  # inertial parameters of a link: mass, three first moments, six second moments
@@ -33,13 +33,13 @@ def _frames(arm: SerialArm, q) -> np.ndarray:
     q = finite_array("q", q, arm.joints)
     placed = [np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4))]
     for link, angle in zip(arm.constants().links, np.moveaxis(q, -1, 0)):
-        rows = _link_frame(link, angle, 0.0, 1.0)
+        rows = link_frame(link, angle, 0.0, 1.0)
         step = [np.stack(np.broadcast_arrays(*row, angle)[:4], -1) for row in rows]
         placed.append(placed[-1] @ np.stack(step, -2))
     return np.stack(placed, -3)
 
 
-def hand(arm: SerialArm, q) -> np.ndarray:
+def hand_position(arm: SerialArm, q) -> np.ndarray:
     """End of the last link at angles `q` (rad), shape ``(..., 3)``, m: x and y level, z up."""
     like("arm", arm, "SerialArm")
     return _frames(arm, q)[..., -1, :3, 3]
@@ -65,7 +65,7 @@ def regressor(arm: SerialArm, q, qd, qdd) -> np.ndarray:
     1986).
     """
     like("arm", arm, "SerialArm")
-    q, qd, qdd = _checked_state(q, qd, qdd, arm.joints)
+    q, qd, qdd = checked_state(q, qd, qdd, arm.joints)
     placed = _frames(arm, q)
     axes, places = placed[..., :3, 2], placed[..., :3, 3]
     matrix = np.zeros((*q.shape, _PER_LINK * arm.joints))

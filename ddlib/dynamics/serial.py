@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddlib._check import every, finite_array, function_of, integer, number, shaped, told
-from ddlib.dynamics.arm import STANDARD_GRAVITY, Link, _checked_state
-from ddlib.dynamics.formulations import _Constants, _LinkConstants, newton_euler
+from ddlib.dynamics.arm import STANDARD_GRAVITY, Link, checked_state
+from ddlib.dynamics.formulations import ArmConstants, LinkConstants, newton_euler
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class SpatialLink:
         object.__setattr__(self, "com", tuple(com.tolist()))
         object.__setattr__(self, "inertia", tuple(map(tuple, inertia.tolist())))
 
-    def constants(self) -> _LinkConstants:
+    def constants(self) -> LinkConstants:
         """What the formulations of inverse dynamics need of the link."""
         cos_twist, sin_twist = _cos_sin(self.twist_deg)
         tip = [self.length, self.offset * sin_twist, self.offset * cos_twist]
@@ -51,7 +51,7 @@ class SpatialLink:
         moments = self.mass * np.outer(point, point)
         moments[:3, :3] += np.trace(inertia) / 2 * np.eye(3) - inertia
         place = (cos_twist, sin_twist, self.length, self.offset, tip)
-        return _LinkConstants(*place, self.mass, self.com, self.inertia, moments.tolist())
+        return LinkConstants(*place, self.mass, self.com, self.inertia, moments.tolist())
 
 
 @dataclass(frozen=True)
@@ -100,16 +100,16 @@ class SerialArm:
         different cost.
         """
         function_of("formulation", formulation, "like newton_euler")
-        state = _checked_state(q, qd, qdd, self.joints)
+        state = checked_state(q, qd, qdd, self.joints)
         tau = formulation(self.constants(), *(np.moveaxis(x, -1, 0) for x in state))
         return np.stack([t + np.zeros(state[0].shape[:-1]) for t in tau], -1)
 
-    def constants(self, make: Callable = float) -> _Constants:
+    def constants(self, make: Callable = float) -> ArmConstants:
         """What the formulations need of the arm, every number made by `make`."""
         links = [_each(make, link.constants()) for link in self.links]
         # under gravity the base accelerates upwards, instead of every link falling
         base = _each(make, [-g for g in self.gravity])
-        return _Constants([_LinkConstants(*values) for values in links], base)
+        return ArmConstants([LinkConstants(*values) for values in links], base)
 
 
 def _each(make, x):

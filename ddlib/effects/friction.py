@@ -143,12 +143,12 @@ class LuGreFriction(_Stribeck):
         """Friction torque (N m) of joints that have long slid at `qd` (rad/s)."""
         return self.size(qd) * np.sign(qd)
 
-    def start(self) -> _Bristles:
+    def start(self) -> Bristles:
         """The memory of one run, unbent at first."""
-        return _Bristles(self)
+        return Bristles(self)
 
 
-class _Bristles:
+class Bristles:
     """What a joint with `LuGreFriction` remembers: how far its bristles are bent."""
 
     def __init__(self, law: LuGreFriction):

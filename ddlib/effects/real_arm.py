@@ -173,7 +173,7 @@ def _fits(effect, part: str) -> bool:
     return any(hasattr(effect, method) for method in _METHODS[part])
 
 
-def _started(effects: tuple, initial) -> Callable:
+def signal_path(effects: tuple, initial) -> Callable:
     """A signal path ``path(x, rng)``, whose memories hold `initial` (..., 2) at first."""
     steps = [e.start(initial) if hasattr(e, "start") else e.apply for e in effects]
 

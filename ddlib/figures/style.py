@@ -28,7 +28,7 @@ from matplotlib.transforms import Bbox
 
 from ddlib._check import function_of, number, one_of, text
 from ddlib._files import write_whole
-from ddlib.tables import _SUPERSCRIPT
+from ddlib.tables import SUPERSCRIPT
 
 _FONT = "'DejaVu Sans',Verdana,sans-serif"
 """Fonts of text in figures: the one they are laid out with, one as wide, the reader's own."""
@@ -201,7 +201,7 @@ class _Powers(ticker.LogFormatterSciNotation):
 
     def __call__(self, x, pos=None):
         label = super().__call__(x, pos).removeprefix(r"$\mathdefault{").removesuffix("}$")
-        label = re.sub(r"\^{(.*)}", lambda power: power[1].translate(_SUPERSCRIPT), label)
+        label = re.sub(r"\^{(.*)}", lambda power: power[1].translate(SUPERSCRIPT), label)
         return label.replace(r"\times", " · ")
 
 

@@ -1,3 +1,6 @@
+from .averaging import (
+    encoder_step as encoder_step,
+)
 from .consistency import (
     physically_consistent as physically_consistent,
 )
@@ -5,7 +8,6 @@ from .equations import (
     by_differences as by_differences,
     by_modulation as by_modulation,
     by_smoothing as by_smoothing,
-    encoder_step as encoder_step,
     repeat as repeat,
 )
 from .instruments import (

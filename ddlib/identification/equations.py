@@ -6,27 +6,33 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.interpolate import BSpline
 from scipy.signal import savgol_filter
 
 from ddlib._check import finite_array, integer, number
 from ddlib.control import Controller
 from ddlib.dynamics import Arm
 from ddlib.effects import Effects, EncoderZero, Quantisation
+from ddlib.identification.averaging import (
+    BY_SAMPLE,
+    acting_time,
+    bumps_held,
+    bumps_over,
+    five_point_velocity,
+    in_runs,
+    mean_sign,
+    notes_on_slow_joints,
+    regressor_blur,
+    where_sign_is_sure,
+)
 from ddlib.identification.regression import (
     FRICTION,
     RIGID,
-    SIGN_SPEED,
-    SLOW,
     Equations,
-    _columns,
     from_states,
+    regressor_columns,
 )
 from ddlib.logs.checking import warn_of_log
 from ddlib.simulation import Recording, record
-
-_BY_SAMPLE = "Equations of single samples give no intervals: what smoothing takes away biases them."
-_SHAKES = 8  # how often noise is added to readings, to see what it does to a regressor
 
 
 def by_differences(recording: Recording, names: Sequence[str] = RIGID + FRICTION) -> Equations:
@@ -88,10 +94,14 @@ def by_modulation(
     width = int((width + tiny) / (6 * recording.step)) * 6 * recording.step
     if hold is None and recording.control_step is None:
         raise ValueError("hold must be given, as the recording has no control_step; got None")
-    acts, recording = _acting(recording, hold), _in_runs(recording)
+    acts, recording = acting_time(recording, hold), in_runs(recording)
     place = recording.t - begin, width, end - begin
-    bumps, later, after = _bumps(*place), _held(*place, *acts), _held(*place, 0.0, recording.step)
-    steady = _steady(recording, names) @ bumps[0].T / bumps[0].sum(-1) > 0.9
+    bumps, later, after = (
+        bumps_over(*place),
+        bumps_held(*place, *acts),
+        bumps_held(*place, 0.0, recording.step),
+    )
+    steady = where_sign_is_sure(recording, names) @ bumps[0].T / bumps[0].sum(-1) > 0.9
     torque = np.moveaxis(recording.tau, -1, 0) @ later.T
     # bumps overlap: the inverse Cholesky factor makes their torque noise independent
     whiten = [
@@ -103,7 +113,7 @@ def by_modulation(
         rows = _modulated(bumps, after, q, recording.step)
         found = []
         for row, keeps, factors in zip(rows, steady, whiten):
-            a = _columns(row, names, np.empty((*q.shape[:-2], len(later))))
+            a = regressor_columns(row, names, np.empty((*q.shape[:-2], len(later))))
             parts = [w @ a[..., k, keep, :] for k, (w, keep) in enumerate(zip(factors, keeps))]
             found.append(np.concatenate(parts, -2))
         return tuple(found)
@@ -112,7 +122,7 @@ def by_modulation(
         np.concatenate([y[..., k, keep] @ w.T for k, (w, keep) in enumerate(zip(ws, keeps))], -1)
         for y, keeps, ws in zip(torque, steady, whiten)
     )
-    blur, notes = _blur(recording, regressor), _slow(steady, names)
+    blur, notes = regressor_blur(recording, regressor), notes_on_slow_joints(steady, names)
     return Equations(tuple(names), regressor(recording.q), torques, blur, notes=notes)
 
 
@@ -144,111 +154,20 @@ def repeat(
     return replace(many, reference=type(many.reference)(*(x[0] for x in many.reference)))
 
 
-def _in_runs(recording: Recording) -> Recording:
-    """The recording with an axis for runs, even if it is a single one."""
-    single = recording.reference.q.ndim == 2
-    return recording.mapped(lambda x: x[..., None, :, :]) if single else recording
-
-
-def _blur(recording: Recording, regressor) -> tuple[np.ndarray, ...]:
-    """``E' E`` by joint of the errors ``E`` that readings' noise makes in a regressor of angles.
-
-    Noise like that of the readings is added to them, of the first repetition.
-    """
-    q = recording.q.reshape(-1, *recording.q.shape[-3:])[0]
-    noise = _reading_noise(q[..., recording.motion, :])
-    plain, rng = regressor(q), np.random.default_rng(0)
-    shaken = [regressor(q + noise * rng.normal(size=q.shape)) for _ in range(_SHAKES)]
-    return tuple(
-        np.mean([(x[j] - a).T @ (x[j] - a) for x in shaken], 0) for j, a in enumerate(plain)
-    )
-
-
-def _reading_noise(q) -> np.ndarray:
-    """Standard deviation of each joint's readings (run, time, joint), rad.
-
-    From sixth differences, which see noise and hardly any motion; an encoder's step gives more.
-    """
-    if q.shape[-2] < 8:
-        return np.zeros(q.shape[-1])
-    rough = np.sqrt(np.mean(np.diff(q, 6, axis=-2) ** 2, (0, 1)) / 924)
-    steps = [encoder_step(q[..., j]) or 0.0 for j in range(q.shape[-1])]
-    rounding = 1e-12 * np.abs(q).max((0, 1))  # of sums: all that a joint at rest has
-    return np.maximum.reduce([rough, np.array(steps) / np.sqrt(12), rounding])
-
-
-def encoder_step(q) -> float | None:
-    """The step of which all differences of readings ``(..., time)`` are multiples; or None."""
-    gaps = np.abs(np.diff(q, axis=-1)).ravel()
-    size = np.abs(q).max(initial=0.0)
-    gaps = gaps[gaps > 1e-9 * size + 1e-15]
-    if gaps.size < 10:
-        return None
-    step = gaps.min()
-    counts = np.round(gaps / step)
-    step = float((gaps * counts).sum() / (counts**2).sum())
-    rough = np.abs(gaps / step - np.round(gaps / step)).max() > 0.1
-    return None if rough or counts.max() > 1e6 else step
-
-
-def _acting(recording: Recording, hold: float | None) -> tuple[float, float]:
-    """When a logged torque begins to act, after its sample, and for how long, s."""
-    if hold is not None:
-        return 0.0, number("hold", hold, 0.0)
-    period = recording.control_step or 0.0
-    late = recording.computing_time  # with one, a sample holds the torque of the reading before
-    return late - period if late else 0.0, period
-
-
-def _steady(recording: Recording, names) -> np.ndarray:
-    """Where friction has a sure sign, by the speed over all repetitions: (joint, run, time)."""
-    q = recording.q
-    speed = np.abs(_five_point(q, recording.step))
-    speed = np.moveaxis(speed.reshape(-1, *q.shape[-3:]).mean(0), -1, 0)
-    wanted = np.array([SLOW if f"F_c{j + 1}" in names else 0.0 for j in range(2)])
-    return speed >= wanted[:, None, None]
-
-
-def _slow(kept, names) -> tuple[str, ...]:
-    """A word on each joint (joint, ...) of which nothing is kept, as it is slow."""
-    return tuple(
-        f"All equations of joint {j + 1} were left out: with F_c{j + 1} they ask for a joint that "
-        f"moves on at {SLOW} rad/s or more. Without F_c{j + 1} they count."
-        for j, keep in enumerate(kept)
-        if f"F_c{j + 1}" in names and not np.any(keep)
-    )
-
-
 def _sampled(recording: Recording, velocity, acceleration, names, margin) -> Equations:
     """Equations at the samples of the motion, `margin` samples away from its ends."""
-    recording = _in_runs(recording)
+    recording = in_runs(recording)
     shape = recording.q.shape
     equations = from_states(
         recording.q, velocity.reshape(shape), acceleration.reshape(shape), recording.tau, names
     )
     inside = np.zeros(recording.t.size, bool)
     inside[recording.motion.start + margin : recording.motion.stop - margin] = True
-    keep = _steady(recording, names) & inside
+    keep = where_sign_is_sure(recording, names) & inside
     regressors = tuple(a[..., k, :] for a, k in zip(equations.regressor, keep))
     torques = tuple(y[..., k] for y, k in zip(equations.torque, keep))
-    notes = _slow(keep, names)
-    return Equations(tuple(names), regressors, torques, biased=_BY_SAMPLE, notes=notes)
-
-
-def _bumps(t, width, length, orders=(0, 1, 2)) -> list[np.ndarray]:
-    """B-splines inside a motion of `length` s and their first two derivatives, (bumps, time)."""
-    knot = width / 6
-    shape = BSpline.basis_element(knot * np.arange(7), extrapolate=False)
-    first = knot * np.arange(int((length - width) / knot + 1e-9) + 1)
-    place = t - first[:, None]
-    return [np.nan_to_num(shape(place, order)) for order in orders]
-
-
-def _held(t, width, length, begin, hold) -> np.ndarray:
-    """Mean of each bump while a sample's torque acts: its value in the middle misses ``hold^2``."""
-    nodes, weights = np.polynomial.legendre.leggauss(3)  # exact for a B-spline of degree 5
-    times = t + begin + hold * (1 + nodes[:, None]) / 2
-    return sum(w / 2 * _bumps(x, width, length, (0,))[0] for w, x in zip(weights, times))
+    notes = notes_on_slow_joints(keep, names)
+    return Equations(tuple(names), regressors, torques, biased=BY_SAMPLE, notes=notes)
 
 
 def _modulated(bumps, after, q, step) -> list[dict]:
@@ -257,8 +176,8 @@ def _modulated(bumps, after, q, step) -> list[dict]:
     The means of the bumps from each sample to the next are `after`.
     """
     w, w1, w2 = (x.T for x in bumps)
-    velocity = _five_point(q, step)
-    sign = _mean_sign(velocity)
+    velocity = five_point_velocity(q, step)
+    sign = mean_sign(velocity)
     q1, q2, v1, v2 = q[..., 0], q[..., 1], velocity[..., 0], velocity[..., 1]
     c2, s2 = np.cos(q2), np.sin(q2)
     weight = np.sin(q1 + q2) @ w
@@ -279,24 +198,3 @@ def _modulated(bumps, after, q, step) -> list[dict]:
         "F_c2": sign[..., 1] @ after.T,
     }
     return [shoulder, elbow]
-
-
-def _mean_sign(velocity) -> np.ndarray:
-    """Mean sign of velocities (..., time, joint) from each sample to the next, straight between.
-
-    The sign at a sample would be wrong by up to a period where a velocity changes it.
-    """
-    slow = np.clip(velocity / SIGN_SPEED, -1.0, 1.0)
-    area = slow * (velocity - SIGN_SPEED * slow / 2)  # integral of the sign over the velocity
-    change = np.diff(velocity, axis=-2)
-    even = np.abs(change) < 1e-6 * SIGN_SPEED
-    mean = np.where(even, slow[..., 1:, :], np.diff(area, axis=-2) / np.where(even, 1.0, change))
-    return np.concatenate([mean, slow[..., -1:, :]], -2)
-
-
-def _five_point(q, step) -> np.ndarray:
-    """Velocity by central differences of fourth order (plain ones at the ends)."""
-    velocity = np.gradient(q, step, axis=-2)
-    near, far = q[..., 3:-1, :] - q[..., 1:-3, :], q[..., 4:, :] - q[..., :-4, :]
-    velocity[..., 2:-2, :] = (8 * near - far) / (12 * step)
-    return velocity

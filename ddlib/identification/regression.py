@@ -395,13 +395,13 @@ def from_states(q, qd, qdd, torque, names: Sequence[str] = RIGID) -> Equations:
     for j in range(2):
         row = dict(zip((*RIGID, *GRAVITY), np.moveaxis(rigid[..., j, :], -1, 0)))
         row |= {f"F_v{j + 1}": qd[..., j], f"F_c{j + 1}": sign[..., j]}
-        regressors.append(_columns(row, names, qd[..., j]))
+        regressors.append(regressor_columns(row, names, qd[..., j]))
     return Equations(tuple(names), tuple(regressors), (torque[..., 0], torque[..., 1]))
 
 
 def true_parameters(arm: Arm, effects: Effects, names: Sequence[str]) -> np.ndarray:
     """What an identification should find; of the effects viscous and Coulomb friction are known."""
-    _known(names)
+    known_names(names)
     viscous = sum(
         np.asarray(f.coefficient) for f in effects.friction if isinstance(f, ViscousFriction)
     )
@@ -443,13 +443,13 @@ def _spread(left, basis) -> np.ndarray:
     return np.sqrt(np.sum(left**2, -1) / np.maximum(free, 1e-9))
 
 
-def _known(names) -> None:
+def known_names(names) -> None:
     """A ValueError for a name of no parameter."""
     for name in names:
         one_of("names", name, (*RIGID, *GRAVITY, *FRICTION))
 
 
-def _columns(row: dict, names: Sequence[str], like) -> np.ndarray:
+def regressor_columns(row: dict, names: Sequence[str], like) -> np.ndarray:
     """The regressor (..., parameters) of one joint from columns by name, zeros `like` if unfelt."""
-    _known(names)
+    known_names(names)
     return np.stack([row.get(name, np.zeros_like(like)) for name in names], -1)

@@ -12,18 +12,18 @@ from scipy.optimize import minimize_scalar
 from scipy.signal import butter, savgol_filter, sosfiltfilt
 
 from ddlib._check import integer, number, shaped
-from ddlib.identification.equations import (
-    _BY_SAMPLE,
-    _acting,
-    _blur,
-    _bumps,
-    _held,
-    _in_runs,
-    _mean_sign,
-    _reading_noise,
-    _slow,
-    _steady,
+from ddlib.identification.averaging import (
+    BY_SAMPLE,
+    acting_time,
+    bumps_held,
+    bumps_over,
     encoder_step,
+    in_runs,
+    mean_sign,
+    notes_on_slow_joints,
+    reading_noise,
+    regressor_blur,
+    where_sign_is_sure,
 )
 from ddlib.identification.regression import FRICTION, RIGID, Equations, from_states
 from ddlib.logs.checking import warn_of_log
@@ -194,9 +194,9 @@ def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
     """
     orders = again(recording.q)
     warn_of_log(recording)
-    acts = _acting(recording, hold)
-    rows, single = _in_runs(recording if rows is None else rows), recording.reference.q.ndim == 2
-    steady = _steady(rows, names)
+    acts = acting_time(recording, hold)
+    rows, single = in_runs(recording if rows is None else rows), recording.reference.q.ndim == 2
+    steady = where_sign_is_sure(rows, names)
     if steady.shape[-1] != recording.t.size:
         raise ValueError(f"rows must have {recording.t.size} samples, got {steady.shape[-1]}")
     states = _later(orders, acts[0] + acts[1] / 2 if width is None else 0.0)
@@ -204,20 +204,24 @@ def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
     (begin, end), step, motion = recording.span, recording.step, recording.motion
     inside = np.zeros(recording.t.size, bool)
     inside[max(motion.start, margin) : min(motion.stop, len(inside) - margin)] = True
-    tau = _in_runs(recording).tau
+    tau = in_runs(recording).tau
     equations = from_states(*np.moveaxis(states, -1, 0), tau, names)
     if width is None:
         _some(keep := steady & inside, margin * step)
         regressors = tuple(a[..., k, :] for a, k in zip(equations.regressor, keep))
         torques = tuple(y[..., k] for y, k in zip(equations.torque, keep))
-        notes = _slow(keep, names)
-        return Equations(tuple(names), regressors, torques, biased=_BY_SAMPLE, notes=notes)
+        notes = notes_on_slow_joints(keep, names)
+        return Equations(tuple(names), regressors, torques, biased=BY_SAMPLE, notes=notes)
     if end - begin < 12 * step * (1 - 1e-6):
         raise ValueError(f"recording must have 12 samples of motion, got {end - begin:g} s")
     number("width", width, 12 * step * (1 - 1e-6), (end - begin) * (1 + 1e-6))
     width = int(width / (6 * step) + 1e-6) * 6 * step
     place = recording.t - begin, width, end - begin
-    bumps, later, after = _bumps(*place, (0,))[0], _held(*place, *acts), _held(*place, 0.0, step)
+    bumps, later, after = (
+        bumps_over(*place, (0,))[0],
+        bumps_held(*place, *acts),
+        bumps_held(*place, 0.0, step),
+    )
     keeps = (steady @ bumps.T / bumps.sum(-1) > 0.9) & ((bumps @ ~inside) / bumps.sum(-1) < 0.02)
     _some(keeps, margin * step)
     # bumps overlap: the inverse Cholesky factor makes their torque noise independent
@@ -227,7 +231,7 @@ def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
 
     def averaged(states) -> tuple[np.ndarray, ...]:
         rows = from_states(*np.moveaxis(states, -1, 0), np.zeros(2), names)[1]
-        sign, found = _mean_sign(states[..., 1]), []
+        sign, found = mean_sign(states[..., 1]), []
         for j, (a, ws, runs) in enumerate(zip(rows, whiten, keeps)):
             mean = bumps @ a
             if f"F_c{j + 1}" in names:
@@ -246,8 +250,10 @@ def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
         )
         for y, ws, runs in zip(equations.torque, whiten, keeps)
     )
-    blur = _blur(_in_runs(recording), regressor)
-    return Equations(tuple(names), averaged(states), torques, blur, notes=_slow(keeps, names))
+    blur = regressor_blur(in_runs(recording), regressor)
+    return Equations(
+        tuple(names), averaged(states), torques, blur, notes=notes_on_slow_joints(keeps, names)
+    )
 
 
 def _some(keep, margin) -> None:
@@ -268,7 +274,7 @@ def _shares(q, noise, moving) -> list[float]:
     for j in range(q.shape[-1]):
         runs = q[..., j].reshape(-1, q.shape[-2])
         grain = encoder_step(runs) if noise is None else None
-        fine = grain is not None and _reading_noise(runs[..., None])[0] > _COARSER * grain
+        fine = grain is not None and reading_noise(runs[..., None])[0] > _COARSER * grain
         known = noise if grain is None or fine else grain / 12**0.5
         shares.append(_likeliest(runs[:, moving], known))
     return shares

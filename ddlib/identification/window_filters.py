@@ -10,7 +10,7 @@ from scipy.ndimage import convolve1d
 from scipy.signal import savgol_coeffs
 
 from ddlib._check import integer, number, one_of, shaped
-from ddlib.identification.regression import Estimate, _known, from_states
+from ddlib.identification.regression import Estimate, from_states, known_names
 from ddlib.logs.checking import warn_of_log
 from ddlib.simulation import Recording
 
@@ -63,7 +63,7 @@ class FilteredEquations:
 
     def __init__(self, regressor, width, step, pull=None, learn=_QUANTITIES):
         if not callable(regressor):
-            _known(regressor := tuple(regressor))
+            known_names(regressor := tuple(regressor))
         if integer("width", width, 5) % 2 == 0:
             raise ValueError(f"width must be odd, so that a window has a centre, got {width}")
         self.regressor, self.width = regressor, width

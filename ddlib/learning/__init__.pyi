@@ -26,7 +26,7 @@ from .span import (
     Lazy as Lazy,
     effective_steps as effective_steps,
     jacobian as jacobian,
-    moved as moved,
+    with_change as with_change,
     with_ones as with_ones,
 )
 from .surrogates import (

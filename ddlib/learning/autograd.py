@@ -8,13 +8,13 @@ from torch import nn
 from tqdm.auto import tqdm
 
 from ddlib._check import finite_array, flag, like, shaped
-from ddlib.learning.network import _FIELDS, INITIAL, TorqueModel, Weights
+from ddlib.learning.network import INITIAL, WEIGHT_NAMES, TorqueModel, Weights
 from ddlib.learning.training import (
     History,
     TrainingDiverged,
-    _check_descent,
-    _check_points,
     _warn_if_worse_than_mean,
+    check_descent,
+    recorded_epochs,
 )
 from ddlib.learning.windows import Scaler
 
@@ -27,7 +27,7 @@ class WindowNetwork(nn.Module):
     def __init__(self, width, hidden=10, joints=2, outputs=2, *, initial=INITIAL, seed=0):
         super().__init__()
         draw = Weights.random(1, width, hidden, joints, outputs, initial, seed)[0]
-        for name in _FIELDS:
+        for name in WEIGHT_NAMES:
             tensor = torch.tensor(getattr(draw, name), dtype=torch.float32)
             self.register_parameter(name, nn.Parameter(tensor))
 
@@ -40,7 +40,7 @@ class WindowNetwork(nn.Module):
 
     def weights(self) -> Weights:
         """The weights as plain arrays."""
-        return Weights(*(getattr(self, name).detach().numpy().copy() for name in _FIELDS))
+        return Weights(*(getattr(self, name).detach().numpy().copy() for name in WEIGHT_NAMES))
 
 
 class TorqueNetwork(nn.Module):
@@ -58,7 +58,7 @@ class TorqueNetwork(nn.Module):
 
     def __init__(self, model: TorqueModel):
         super().__init__()
-        for name in _FIELDS:
+        for name in WEIGHT_NAMES:
             array = np.array(getattr(model.weights, name), float)
             self.register_parameter(name, nn.Parameter(torch.from_numpy(array)))
         for name in ("inputs", "outputs"):
@@ -97,7 +97,7 @@ class TorqueNetwork(nn.Module):
             Scaler(plain(f"{name}_low"), plain(f"{name}_high"), tuple(plain(f"{name}_target")))
             for name in ("inputs", "outputs")
         )
-        return TorqueModel(Weights(*map(plain, _FIELDS)), *scalers, self.step)
+        return TorqueModel(Weights(*map(plain, WEIGHT_NAMES)), *scalers, self.step)
 
 
 def module_gradient(module: nn.Module, windows) -> np.ndarray:
@@ -165,7 +165,7 @@ def train(
     """
     like("network", network, "Module")
     flag("progress", progress)
-    _check_descent(rate, momentum, epochs)
+    check_descent(rate, momentum, epochs)
     x, y = finite_array("x", x), finite_array("y", y)
     if y.ndim != 2 or len(y) != len(x) or (np.ptp(y, axis=0) == 0).any():
         raise ValueError(
@@ -174,7 +174,7 @@ def train(
     x, y = (torch.as_tensor(array, dtype=torch.float32) for array in (x, y))
     spread = y.std(0, correction=0)
     optimiser = torch.optim.SGD(network.parameters(), lr=rate / len(x), momentum=momentum)
-    history, points = History(), set(_check_points(epochs))
+    history, points = History(), set(recorded_epochs(epochs))
     bar = tqdm(range(1, epochs + 1), desc="epochs", disable=not progress)
     for epoch in bar:
         optimiser.zero_grad()

@@ -13,17 +13,17 @@ from tqdm.auto import tqdm
 
 from ddlib._check import cases_of, every, finite_array, flag, integer, like, shaped
 from ddlib.learning._threads import in_threads
-from ddlib.learning.network import TorqueModel, Weights, _from_rows, rows
+from ddlib.learning.network import TorqueModel, Weights, from_rows, rows
 from ddlib.learning.training import (
     WARM_UP_MOMENTUM,
     History,
     TrainingDiverged,
     TrainingInterrupted,
     TrainingSet,
-    _check_descent,
-    _check_points,
     _warn_if_worse_than_mean,
+    check_descent,
     default_rate,
+    recorded_epochs,
 )
 
 _WORKERS = min(2, torch.get_num_threads())  # threads of `train_ensemble`: OMP_NUM_THREADS, or two
@@ -174,14 +174,14 @@ def _per_member(rate, momentum, epochs, members):
         if array.shape not in ((), (members,)):
             raise ValueError(f"{name} must be one number or {members}, got shape {array.shape}")
     for pair in np.broadcast(*arrays):
-        _check_descent(*map(float, pair), epochs)
+        check_descent(*map(float, pair), epochs)
     return [np.broadcast_to(array, members) for array in arrays]
 
 
 def _train_block(descent, initial, data, test, epochs, warm_up, snapshots, bar, stop):
     """Train some members in this thread until `stop`; `bar` is told how far they are."""
     torch.set_num_threads(1)
-    history, points = History(), set(_check_points(epochs))
+    history, points = History(), set(recorded_epochs(epochs))
     kept = {0: initial} if 0 in snapshots else {}
     spread = data.y.std(0)
     if test is not None:
@@ -297,7 +297,7 @@ class Descent:
     def weights(self) -> Weights:
         """All members as plain arrays."""
         first = self.first.numpy().astype(float).reshape(self.members, self.rows, -1)
-        return _from_rows(first, self.second.numpy().astype(float), self.shape)
+        return from_rows(first, self.second.numpy().astype(float), self.shape)
 
 
 def _times(matrix: torch.Tensor, rows: int) -> Callable[[torch.Tensor], torch.Tensor]:

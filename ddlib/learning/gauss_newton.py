@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 import torch
 
-from ddlib.learning.network import Weights, _from_rows, rows
+from ddlib.learning.network import Weights, from_rows, rows
 from ddlib.learning.training import TrainingSet
 
 _BLOCK = 512  # cases whose products of inputs are held at once, or more while they are
@@ -20,7 +20,7 @@ _float64 = partial(torch.as_tensor, dtype=torch.float64)
 _zeros = partial(torch.zeros, dtype=torch.float64)
 
 
-class _Objective:
+class Objective:
     """What `ddlib.learning.solve` minimises, as a function of one vector of parameters.
 
     The vector holds a row for each hidden unit, then for each output unit (the weights
@@ -67,7 +67,7 @@ class _Objective:
     def unpack(self, vector: torch.Tensor) -> Weights:
         """Network of a vector of parameters."""
         first, second = self._parts(vector)
-        return _from_rows((first @ self._whiten.T).numpy(), second.numpy().copy(), self._window)
+        return from_rows((first @ self._whiten.T).numpy(), second.numpy().copy(), self._window)
 
     def value(self, vector: torch.Tensor) -> tuple[float, float]:
         """The objective (penalty included) and the pooled training RMSS."""

@@ -20,7 +20,7 @@ from tqdm.auto import tqdm
 from ddlib._check import cases_of, finite_array, flag, integer, like, number, shaped
 from ddlib.learning._threads import in_threads
 from ddlib.learning.descent import _WORKERS
-from ddlib.learning.gauss_newton import _Objective
+from ddlib.learning.gauss_newton import Objective
 from ddlib.learning.network import TorqueModel, Weights
 from ddlib.learning.training import History, TrainingInterrupted, TrainingSet
 
@@ -129,7 +129,7 @@ def solve(
         if stop.is_set():
             return member, _End(None, [(np.nan, np.nan)], np.nan, np.nan, "interrupted")
         torch.set_num_threads(1)  # of this thread: one core for each member
-        objective = _Objective(member, data, decay, test, whiten)
+        objective = Objective(member, data, decay, test, whiten)
         start = objective.pack(member)
         end = _descend(objective, start, steps, tolerance, target_rmss, tell, stop)
         tell(steps + 1 - len(end.path), end.path[-1][0])

@@ -18,7 +18,7 @@ INITIAL = 0.03
 from 0.01 to 1 it agrees best with what the report saw in its weights."""
 
 # names of the arrays of `Weights`
-_FIELDS = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
+WEIGHT_NAMES = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
 
 
 def _sigmoid(x):
@@ -87,16 +87,16 @@ class Weights:
     @classmethod
     def concatenate(cls, parts) -> Weights:
         """One ensemble of several: their members in order."""
-        return cls(*(np.concatenate([getattr(p, name) for p in parts]) for name in _FIELDS))
+        return cls(*(np.concatenate([getattr(p, name) for p in parts]) for name in WEIGHT_NAMES))
 
     @classmethod
     def stack(cls, parts) -> Weights:
         """Several of one shape along a new leading axis."""
-        return cls(*(np.stack([getattr(p, name) for p in parts]) for name in _FIELDS))
+        return cls(*(np.stack([getattr(p, name) for p in parts]) for name in WEIGHT_NAMES))
 
     def __getitem__(self, index) -> Weights:
         """The network(s) at `index` of the leading axis."""
-        return Weights(*(getattr(self, name)[index] for name in _FIELDS))
+        return Weights(*(getattr(self, name)[index] for name in WEIGHT_NAMES))
 
     def __len__(self) -> int:
         if self.hidden_bias.ndim < 2:
@@ -112,12 +112,12 @@ class Weights:
     def largest(self) -> np.ndarray:
         """Magnitude of the largest weight or bias of each network, shape (...)."""
         lead = self.hidden_bias.ndim - 1
-        each = [np.abs(getattr(self, name)) for name in _FIELDS]
+        each = [np.abs(getattr(self, name)) for name in WEIGHT_NAMES]
         return np.max([x.max(axis=tuple(range(lead, x.ndim))) for x in each], axis=0)
 
     def count(self, biases: bool = False) -> int:
         """Number of weights of one network, with or without `biases`."""
-        names = [n for n in _FIELDS if biases or not n.endswith("bias")]
+        names = [n for n in WEIGHT_NAMES if biases or not n.endswith("bias")]
         lead = self.hidden_bias.ndim - 1
         return sum(int(np.prod(getattr(self, n).shape[lead:])) for n in names)
 
@@ -152,7 +152,7 @@ def rows(weights: Weights) -> np.ndarray:
     return np.concatenate(parts, -2)
 
 
-def _from_rows(first: np.ndarray, output_weights: np.ndarray, window: tuple) -> Weights:
+def from_rows(first: np.ndarray, output_weights: np.ndarray, window: tuple) -> Weights:
     """Networks of their `rows` and hidden-to-output weights, `window` being (joints, width)."""
     hidden = output_weights.shape[-1]
     filters = first[..., :-1].reshape(*first.shape[:-1], *window)
@@ -212,7 +212,7 @@ class TorqueModel:
         """Write the model to an ``.npz`` file (float32), replacing it in one step."""
         path = Path(path)
         path.parent.mkdir(parents=True, exist_ok=True)
-        arrays = {name: getattr(self.weights, name).astype(np.float32) for name in _FIELDS}
+        arrays = {name: getattr(self.weights, name).astype(np.float32) for name in WEIGHT_NAMES}
         for name in ("inputs", "outputs"):
             scaler = getattr(self, name)
             arrays |= {f"{name}_low": scaler.low, f"{name}_high": scaler.high}
@@ -230,7 +230,7 @@ class TorqueModel:
         content = io.BytesIO(Path(path).read_bytes())
         try:
             with np.load(content) as file:
-                weights = Weights(*(file[name].astype(float) for name in _FIELDS))
+                weights = Weights(*(file[name].astype(float) for name in WEIGHT_NAMES))
                 scalers = [
                     Scaler(file[f"{n}_low"], file[f"{n}_high"], tuple(file[f"{n}_target"]))
                     for n in ("inputs", "outputs")

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ddlib._check import every, finite_array, integer, like, non_negative, number, shaped
-from ddlib.learning.network import Weights, _from_rows, rows
+from ddlib.learning.network import Weights, from_rows, rows
 from ddlib.learning.training import WARM_UP_MOMENTUM, TrainingSet
 
 
@@ -122,17 +122,17 @@ def jacobian(weights: Weights, x) -> np.ndarray:
     return (output * (1 - output))[..., None] * parts
 
 
-def moved(weights: Weights, change) -> Weights:
+def with_change(weights: Weights, change) -> Weights:
     """One network plus changes of its parameters, ``(..., parameter)``, ordered as `jacobian`."""
     like("weights", weights, "Weights")
     start, change = rows(weights), finite_array("change", change)
     shaped("change", change, f"(..., {start.size + weights.output_weights.size})")
     first = start + change[..., : start.size].reshape(*change.shape[:-1], *start.shape)
     second = change[..., start.size :].reshape(*change.shape[:-1], *weights.output_weights.shape)
-    return _from_rows(first, weights.output_weights + second, weights.hidden_weights.shape[-2:])
+    return from_rows(first, weights.output_weights + second, weights.hidden_weights.shape[-2:])
 
 
-class _Course(NamedTuple):
+class TangentCourse(NamedTuple):
     """What a network does along its training; a leading axis are the epochs."""
 
     weights: Weights
@@ -159,7 +159,7 @@ class Lazy:
 
     def predict(
         self, rate: float, epochs, momentum: float = 0.0, warm_up: int = 0, targets=None
-    ) -> _Course:
+    ) -> TangentCourse:
         """Weights and errors after some epochs of batch descent with momentum.
 
         `rate` is per case, as in `train`; scaled `targets` replace the training set's.
@@ -170,4 +170,4 @@ class Lazy:
         steps = effective_steps(eps * self.curvatures, epochs, momentum, warm_up)
         change = -eps * (steps * gradient) @ self._axes.T
         left = error.ravel() + change @ self._slopes.T
-        return _Course(moved(self._start, change), left.reshape(-1, *error.shape))
+        return TangentCourse(with_change(self._start, change), left.reshape(-1, *error.shape))

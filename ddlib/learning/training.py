@@ -202,12 +202,12 @@ def default_rate(width: int) -> float:
     return 33.0 / integer("width", width, 1)
 
 
-def _check_points(epochs: int, points: int = 60) -> np.ndarray:
+def recorded_epochs(epochs: int, points: int = 60) -> np.ndarray:
     """Epochs at which errors are recorded: about `points`, equally spaced on a log scale."""
     return np.unique(np.round(np.geomspace(1, epochs, points)).astype(int))
 
 
-def _check_descent(rate: float, momentum: float, epochs: int) -> None:
+def check_descent(rate: float, momentum: float, epochs: int) -> None:
     """Refuse options of descent that are out of range."""
     number("rate", rate, 0.0, _MAX_RATE, open_low=True)
     number("momentum", momentum, 0.0, 0.999)

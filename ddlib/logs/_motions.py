@@ -17,7 +17,7 @@ from scipy.signal import savgol_filter
 from ddlib.logs._readings import lines_of_a_reading, unwrapped
 from ddlib.logs._stamps import usual_step
 from ddlib.logs._torques import at_rest, weak
-from ddlib.logs.findings import JOINTS, Finding, found
+from ddlib.logs.findings import JOINTS, Finding, finding
 from ddlib.logs.log import LoggedRun
 from ddlib.tables import significant
 
@@ -53,7 +53,7 @@ def motions(runs: Sequence[LoggedRun]) -> Iterator[Finding]:
     stretches = _stretches(runs, step)
     width = _width(stretches, step)
     if not stretches or width < 12 or sum(len(s.q) for s in stretches) < 4 * width:
-        yield found(
+        yield finding(
             None, "too short", "note", (None, None), [],
             "There are too few samples of motion to compare torque and motion.",
             "Sign, lag and units of the torque are not checked.", "Record longer motions.",
@@ -279,7 +279,7 @@ def _gravity(with_gravity: _Fit, without: _Fit, driven) -> Iterator[Finding]:
     if seen:
         names = " and ".join(JOINTS[j] for j in seen)
         parts = ", ".join(f"{100 * told[j]:.0f} %" for j in seen)
-        yield found(
+        yield finding(
             None, "gravity", "note", (None, None), [],
             f"Torques that depend on the pose explain {parts} of what the {names} would otherwise "
             "leave over: the arm seems to carry weight.",
@@ -343,7 +343,7 @@ def _other_readings(stretches, width, step, rigid, driven, as_is: _Fit) -> Itera
     if reading is None or share > 0.75 * as_is.share or as_is.share < 0.02:
         return
     kind, words, advice = reading
-    yield found(
+    yield finding(
         None, kind, "wrong" if share < 0.5 * as_is.share else "doubtful", (None, None), [],
         f"The equations leave {100 * as_is.share:.1f} % of the torques over; they would leave "
         f"{100 * share:.1f} % if {words}.",
@@ -398,7 +398,7 @@ def _lag(equations, rigid, driven, step, thinned, waits, heavy) -> Iterator[Find
     margin = f" ± {2 * thinned * error:.1f}"
     if abs(lag) == SHIFTS[-1]:  # no later one was tried
         margin = " or more"
-    yield found(
+    yield finding(
         None, "lag", "wrong" if at < 0.5 * now else "doubtful", (None, None), [],
         f"The torque fits the motion best if it is read {thinned * abs(lag):.1f}{margin} samples "
         f"({1000 * abs(lag) * step:.3g} ms) {which}; {100 * now:.1f} % of it are left over now, "
@@ -443,7 +443,7 @@ def _signs(equations, gravity, driven) -> Iterator[Finding]:
             continue
         matters = y.std() > 2 * left.std()
         if slope < -4 * error and matters:
-            yield found(
+            yield finding(
                 None, "sign of the torque", "wrong", (None, j), [],
                 f"A positive torque of the {JOINTS[j]} slows it down: its inertia would be "
                 f"{slope:.3g} kg m^2.",
@@ -451,7 +451,7 @@ def _signs(equations, gravity, driven) -> Iterator[Finding]:
                 "Change the sign of the torque, or of the angle, of both joints if both are so.",
             )  # fmt: skip
         elif matters and not 1e-6 < slope < 1e4 and slope > 4 * error:
-            yield found(
+            yield finding(
                 None, "units of torque", "wrong", (None, j), [],
                 f"The inertia of the {JOINTS[j]} would be {slope:.3g} kg m^2.",
                 "No arm of this kind exists.",
@@ -504,7 +504,7 @@ def _excitation(stretches, equations, width, step, driven, fit, heavy) -> Iterat
         advice = f"Leave {' or '.join(lost)} out, or move so that they matter apart."
     if not told:
         advice = "Record longer motions in which both joints speed up and slow down, each its way."
-    yield found(
+    yield finding(
         None, "excitation", "doubtful" if lost or not told else "note", (None, None), [], seen,
         "What a motion does not tell comes out at random, and spoils the rest.", advice,
     )  # fmt: skip

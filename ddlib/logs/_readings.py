@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ddlib.logs._stamps import usual_step
-from ddlib.logs.findings import Finding, count, found
+from ddlib.logs.findings import Finding, counted, finding
 from ddlib.logs.log import LoggedRun
 
 TURN = 2 * np.pi
@@ -23,14 +23,14 @@ def readings(k: int, run: LoggedRun) -> Iterator[Finding]:
         q, tau = run.q[:, j], run.tau[:, j]
         missing = np.flatnonzero(~np.isfinite(q) | ~np.isfinite(tau))
         if missing.size:
-            yield found(
+            yield finding(
                 run, "missing", "note" if missing.size < 0.05 * q.size else "doubtful", (k, j),
                 missing, f"{missing.size} samples have no angle or no torque.",
                 "Nothing can be computed across them.", "Leave these stretches out of a fit.",
             )  # fmt: skip
             if missing.size > q.size - 12:
                 return
-            q, tau = _filled(q), _filled(tau)
+            q, tau = without_gaps(q), without_gaps(tau)
         yield from _wraps(k, j, run, q)
         whole = unwrapped(q)
         lost = dropouts(whole, q, run.t)
@@ -58,9 +58,9 @@ def _spikes(k, j, run, q, lost):
         ("doubtful", sizes <= 0.01 * spread),
     ):
         if chosen.any():
-            yield found(
+            yield finding(
                 run, "spike", severity, (k, j), rows[chosen],
-                f"{count(chosen.sum(), 'angle')} far from the neighbours, by up to "
+                f"{counted(chosen.sum(), 'angle')} far from the neighbours, by up to "
                 f"{sizes[chosen].max():.3g} rad of a range of {spread:.3g} rad.",
                 "An acceleration sees a spike first: one of half a radian can make an inertia a "
                 "tenth of what it is.",
@@ -68,7 +68,7 @@ def _spikes(k, j, run, q, lost):
             )  # fmt: skip
 
 
-def _filled(x):
+def without_gaps(x):
     """Samples that are missing, on a line between those that are not."""
     at = np.arange(x.size)
     good = np.isfinite(x)
@@ -95,9 +95,9 @@ def _wraps(k, j, run, q):
     jumps = np.diff(q)
     rows = np.flatnonzero(wrapped(jumps))
     if rows.size:
-        yield found(
+        yield finding(
             run, "wrap", "wrong", (k, j), rows + 1,
-            f"The angle jumps by a whole turn {count(rows.size, 'time')}.",
+            f"The angle jumps by a whole turn {counted(rows.size, 'time')}.",
             "A jump looks like a speed of hundreds of rad/s; inertias come out too small.",
             "Take `numpy.unwrap(q, axis=-2)`, with period=360 before degrees are converted.",
         )  # fmt: skip
@@ -105,9 +105,9 @@ def _wraps(k, j, run, q):
     usual = 6 * np.percentile(np.abs(jumps), 90) + 1e-3
     rows = np.flatnonzero((np.abs(jumps) > 180.0) & (np.abs(degrees) < min(usual, 30.0)))
     if rows.size:
-        yield found(
+        yield finding(
             run, "wrap", "wrong", (k, j), rows + 1,
-            f"The angle jumps by 360 {count(rows.size, 'time')}: it seems to be in degrees.",
+            f"The angle jumps by 360 {counted(rows.size, 'time')}: it seems to be in degrees.",
             "Speeds, sines and inertias are all wrong.",
             "Name the unit deg, and take `numpy.unwrap` with period=360.",
         )  # fmt: skip
@@ -207,7 +207,7 @@ def _without(q, lost):
     q = q.copy()
     for b, e, how in lost:
         q[b + (how == "held") : e] = np.nan
-    return _filled(q)
+    return without_gaps(q)
 
 
 def _dropouts(k, j, run, q, lost):
@@ -217,10 +217,10 @@ def _dropouts(k, j, run, q, lost):
             continue
         rows = np.concatenate([np.arange(b, e) for b, e in stretches])
         longest = max(e - b for b, e in stretches)
-        yield found(
+        yield finding(
             run, f"drop-outs ({how})", "wrong" if rows.size > 0.003 * q.size else "doubtful",
             (k, j), rows,
-            f"The angle {what} in {count(len(stretches), 'stretch')} of up to {longest} samples, "
+            f"The angle {what} in {counted(len(stretches), 'stretch')} of up to {longest} samples, "
             "while the joint moves.",
             "Each ends with a jump, which looks like a large speed: frictions and inertias are "
             "wrong.",
@@ -239,7 +239,7 @@ def _held_torque(k, j, run, q, tau):
     if length.size and still > 0.3:
         usual = np.median(length)
         if usual >= 2 and length.size * usual > 0.7 * tau.size and np.ptp(length) <= 2:
-            yield found(
+            yield finding(
                 run, "slow torque", "note", (k, j), [],
                 f"The torque changes every {usual:.0f} samples only.",
                 f"It is late by {(usual - 1) / 2:.1f} samples in the mean.",
@@ -270,9 +270,9 @@ def _held_torque(k, j, run, q, tau):
         if stretches:
             rows = np.concatenate([np.arange(b, e) for b, e in stretches])
             share = rows.size / tau.size
-            yield found(
+            yield finding(
                 run, f"torque {value}", "wrong" if value == "zero" and share < 0.1 else "doubtful",
-                (k, j), rows, f"The torque {what} in {count(len(stretches), 'stretch')}.",
+                (k, j), rows, f"The torque {what} in {counted(len(stretches), 'stretch')}.",
                 "Equations are told a torque that did not act.",
                 "Leave these samples out, unless the torque was switched so.",
             )  # fmt: skip
@@ -303,7 +303,7 @@ def _slow_readings(k, run):
     """Lines that repeat all readings of the line before: the log is faster than what it logs."""
     usual = lines_of_a_reading(run)
     if usual > 1:
-        yield found(
+        yield finding(
             run, "slow readings", "doubtful", (k, None), [],
             f"Angles and torques change together, every {usual:.0f} samples only.",
             "From line to line the arm stands still and jumps; readings are up to "
@@ -324,9 +324,9 @@ def _one_sign(k, j, run, q, tau):
     both = min(moves[moves > 0].sum(), -moves[moves < 0].sum()) > 0.1 * path
     touches = np.count_nonzero(np.diff(small.astype(np.int8)) == 1)  # times it comes down to zero
     if both and path > 0.1 and touches >= 3 and 0.03 < small.mean() < 0.7:
-        yield found(
+        yield finding(
             run, "torque of one sign", "doubtful", (k, j), [],
-            f"The torque comes down to zero {count(touches, 'time')} and never changes its sign, "
+            f"The torque comes down to zero {counted(touches, 'time')} and never changes its sign, "
             "while the joint moves both ways.",
             "If only the amount of a current was logged, inertia and friction are wrong.",
             "Log the current with its sign, or give it that of the command.",
@@ -347,7 +347,7 @@ def _limit(k, j, run, tau):
             continue
         if longest > 0.6 * tau.size or np.unique(tau).size < 12:
             continue  # a torque of few values, as of pulses
-        yield found(
+        yield finding(
             run, "saturation", "doubtful", (k, j), rows,
             f"{rows.size} torques are exactly {value:.4g} N m, the {name} value, up to {longest} "
             "in a row.",

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ddlib.logs.findings import JOINTS, Finding, count, found
+from ddlib.logs.findings import JOINTS, Finding, counted, finding
 from ddlib.logs.log import LoggedRun
 
 SLOWEST, FASTEST = 0.002, 100.0  #: Peak speeds of a joint, rad/s, outside of which units are wrong.
@@ -26,7 +26,7 @@ def stamps(k: int, run: LoggedRun) -> Iterator[Finding]:
     steps, step = np.diff(run.t), usual_step(run.t)
     place = (k, None)
     if not step:
-        yield found(
+        yield finding(
             run, "time", "wrong", place, [], "No time is later than the one before.",
             "Speeds and accelerations cannot be computed.",
             "Name the column of the time, or a rate.",
@@ -34,17 +34,17 @@ def stamps(k: int, run: LoggedRun) -> Iterator[Finding]:
         return
     back, same = np.flatnonzero(steps < 0), np.flatnonzero(steps == 0)
     if back.size:
-        yield found(
+        yield finding(
             run, "time runs back", "wrong", place, back + 1,
-            f"The time falls {count(back.size, 'time')}, by up to {-steps[back].min():.3g} s.",
+            f"The time falls {counted(back.size, 'time')}, by up to {-steps[back].min():.3g} s.",
             "Samples are in a wrong order, or several runs are read as one.",
             "Split the log into its runs, or sort it by time.",
         )  # fmt: skip
     if same.size:
         share = same.size / steps.size
-        yield found(
+        yield finding(
             run, "repeated time", "doubtful" if share > 0.002 else "note", place, same + 1,
-            f"Of {count(run.t.size, 'sample')} {same.size:,} have the time of the one before.",
+            f"Of {counted(run.t.size, 'sample')} {same.size:,} have the time of the one before.",
             "A difference between such samples has no speed.",
             "Resample the log: `resample` keeps one sample of each time.",
         )  # fmt: skip
@@ -53,10 +53,11 @@ def stamps(k: int, run: LoggedRun) -> Iterator[Finding]:
         missing = float(np.sum(steps[gaps] / step - 1))
         longest = steps[gaps].max()
         grave = missing > 0.02 * run.t.size or longest > 20 * step
-        yield found(
+        yield finding(
             run, "gaps", "doubtful" if grave else "note", place, gaps + 1,
-            f"About {count(round(missing), 'sample')} missing at {count(gaps.size, 'place')}; the "
-            f"longest gap is {1000 * longest:.4g} ms, where {1000 * step:.4g} ms are usual.",
+            f"About {counted(round(missing), 'sample')} missing at "
+            f"{counted(gaps.size, 'place')}; the longest gap is {1000 * longest:.4g} ms, where "
+            f"{1000 * step:.4g} ms are usual.",
             "Counted as samples, the motion looks faster there than it was.",
             "Resample by the times, and leave long gaps out.",
         )  # fmt: skip
@@ -65,7 +66,7 @@ def stamps(k: int, run: LoggedRun) -> Iterator[Finding]:
     if spread > 0.005:
         unit = _rounding(run.t, step)
         if unit and spread < 1.2 * unit / step:
-            yield found(
+            yield finding(
                 run, "rounded time", "note", place, [],
                 f"Times are rounded to {1000 * unit:.3g} ms, so steps of {1000 * step:.4g} ms "
                 f"jump by {100 * unit / step:.0f} %.",
@@ -73,7 +74,7 @@ def stamps(k: int, run: LoggedRun) -> Iterator[Finding]:
                 "Resample with the mean step, as `resample` does.",
             )  # fmt: skip
         else:
-            yield found(
+            yield finding(
                 run, "jitter", "doubtful" if spread > 0.2 else "note", place, [],
                 f"Steps vary by {100 * spread:.2g} % (standard deviation) about "
                 f"{1000 * step:.4g} ms.",
@@ -106,21 +107,21 @@ def units(k: int, run: LoggedRun) -> Iterator[Finding]:
     fastest, farthest = float(np.max(speed)), float(np.max(moved))
     seen = f"The fastest joint moves {farthest:.3g} rad in all, at {fastest:.3g} rad/s."
     if farthest > 0.05 and fastest < SLOWEST * min(1.0, farthest):
-        yield found(
+        yield finding(
             run, "units of time", "wrong", (k, None), [],
             f"{seen} The step is {step:.4g} s.",
             "If the times are milliseconds, inertias come out a million times too large.",
             "Name the unit of the time: ms, us or ns.",
         )  # fmt: skip
     elif farthest > FARTHEST and fastest > 0.2 * FASTEST:
-        yield found(
+        yield finding(
             run, "units of angle", "wrong", (k, None), [],
             seen,
             "If these are degrees, inertias come out 57 times too small, and sines are of nothing.",
             "Name the unit of the angles: deg.",
         )  # fmt: skip
     elif fastest > FASTEST:
-        yield found(
+        yield finding(
             run, "units of time", "wrong", (k, None), [],
             f"{seen} The step is {step:.4g} s.",
             "No arm is as fast: inertias come out far too small.",
@@ -129,7 +130,7 @@ def units(k: int, run: LoggedRun) -> Iterator[Finding]:
     highest = np.nanmax(np.abs(run.tau), axis=0, initial=0.0)
     if highest.max() > HIGHEST:
         j = int(np.argmax(highest))
-        yield found(
+        yield finding(
             run, "units of torque", "doubtful", (k, j), [],
             f"The torque of the {JOINTS[j]} goes to {highest[j]:.4g} N m, as in few arms.",
             "If these are mA or N mm, inertias come out a thousand times too large.",

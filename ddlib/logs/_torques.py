@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from scipy.signal import savgol_filter
 
-from ddlib.logs._readings import _filled, unwrapped
+from ddlib.logs._readings import unwrapped, without_gaps
 from ddlib.logs._stamps import usual_step
-from ddlib.logs.findings import JOINTS, Finding, found
+from ddlib.logs.findings import JOINTS, Finding, finding
 from ddlib.logs.log import LoggedRun
 
 ALIKE = 0.45
@@ -47,7 +47,7 @@ def at_work(k: int, run: LoggedRun) -> Iterator[Finding]:
     """Joints of run number `k` that rest, or whose torque says nothing."""
     rest = at_rest(run)
     if rest.all():
-        yield found(
+        yield finding(
             run, "at rest", "wrong", (k, None), [],
             f"No joint moves: the angles stay within {_moved(run.q).max():.3g} rad.",
             "No inertia and no friction can be told from this run, of an arm that hangs only the "
@@ -56,7 +56,7 @@ def at_work(k: int, run: LoggedRun) -> Iterator[Finding]:
         )  # fmt: skip
     for j in range(2):
         if rest[j] and not rest.all():
-            yield found(
+            yield finding(
                 run, "at rest", "doubtful", (k, j), [],
                 f"The {JOINTS[j]} moves by {_moved(run.q)[j]:.3g} rad only.",
                 "Its own inertia, the coupling and its friction cannot be told one by one, only "
@@ -70,7 +70,7 @@ def at_work(k: int, run: LoggedRun) -> Iterator[Finding]:
         other = np.nanstd(run.tau[:, 1 - j])
         if steady(tau):
             both = steady(run.tau[:, 1 - j])
-            yield found(
+            yield finding(
                 run, "no torque", "wrong" if both else "doubtful", (k, j), [],
                 f"The {JOINTS[j]}'s torque is {tau[0]:.4g} N m throughout.",
                 "A network has nothing to learn there. Equations of a joint without a motor hold, "
@@ -80,7 +80,7 @@ def at_work(k: int, run: LoggedRun) -> Iterator[Finding]:
                 "leave them out.",
             )  # fmt: skip
         elif weak(run, j):
-            yield found(
+            yield finding(
                 run, "little torque", "doubtful", (k, j), [],
                 f"The {JOINTS[j]}'s torque varies by {tau.std():.2g} N m, where the other's varies "
                 f"by {other:.2g} N m, and is noisy.",
@@ -104,7 +104,7 @@ def follows_velocity(run: LoggedRun, j: int) -> tuple[float, float]:
     good = np.isfinite(q) & np.isfinite(tau) & np.concatenate([[True], np.diff(t) > 0])
     if good.sum() < 300 or np.nanstd(tau) == 0:
         return 0.0, 0.0
-    q, tau, t = unwrapped(_filled(q[good])), tau[good], t[good]
+    q, tau, t = unwrapped(without_gaps(q[good])), tau[good], t[good]
     step = usual_step(t)
     velocity = fast(np.diff(q) / np.maximum(np.diff(t), 0.3 * step))
     angle, torque = fast(q)[1:], fast(tau)[1:]
@@ -178,7 +178,7 @@ def commands(runs: Sequence[LoggedRun]) -> Iterator[Finding]:
                 signs.append(f"it ends at exactly {limit:g} N m")
             if not signs or (len(signs) == 1 and "ends at" in signs[0]):
                 continue
-            yield found(
+            yield finding(
                 run, "command", "wrong" if len(signs) > 1 else "doubtful", (k, j), [],
                 f"The {JOINTS[j]}'s torque looks like a command: {' and '.join(signs)}.",
                 "What the motor gave may differ by half; then inertias and friction are those of "

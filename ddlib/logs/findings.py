@@ -41,49 +41,53 @@ class Check:
     @property
     def wrong(self) -> tuple[Finding, ...]:
         """The findings that make a result wrong."""
-        return tuple(found for found in self.findings if found.severity == "wrong")
+        return tuple(finding for finding in self.findings if finding.severity == "wrong")
 
     def of(self, kind: str) -> tuple[Finding, ...]:
         """The findings of one kind."""
-        return tuple(found for found in self.findings if found.kind == kind)
+        return tuple(finding for finding in self.findings if finding.kind == kind)
 
     def __repr__(self):
         groups = self._groups()
-        heads = [f"{found.severity:8s}  {place(found, runs)}" for found, runs in groups]
+        heads = [f"{finding.severity:8s}  {place(finding, runs)}" for finding, runs in groups]
         lines = [self._title()]
-        for head, (found, runs) in zip(heads, groups):
-            lines += ["", f"{head}: {found.kind}"[:_ADVICE]]
-            for text in (f"{found.what} {_rows(found, runs)}", found.effect, f"Do: {found.advice}"):
+        for head, (finding, runs) in zip(heads, groups):
+            lines += ["", f"{head}: {finding.kind}"[:_ADVICE]]
+            for text in (
+                f"{finding.what} {_rows(finding, runs)}",
+                finding.effect,
+                f"Do: {finding.advice}",
+            ):
                 lines += textwrap.wrap(text, _ADVICE, initial_indent="  ", subsequent_indent="  ")
         return "\n".join(lines)
 
     def _repr_markdown_(self) -> str:
         """The same as a list of a notebook."""
         lines = [f"**{self._title()}.**", ""]
-        for found, runs in self._groups():
-            head = f"- **{found.severity.capitalize()}: {found.kind}, {place(found, runs)}.**"
-            told = f"{found.what} {_rows(found, runs)}".strip()
-            lines.append(f"{head} {told} {found.effect} *{found.advice}*")
+        for finding, runs in self._groups():
+            head = f"- **{finding.severity.capitalize()}: {finding.kind}, {place(finding, runs)}.**"
+            what = f"{finding.what} {_rows(finding, runs)}".strip()
+            lines.append(f"{head} {what} {finding.effect} *{finding.advice}*")
         return "\n".join(lines)
 
     def _title(self) -> str:
         samples = sum(run.t.size for run in self.runs)
         counts = [sum(f.severity == severity for f in self.findings) for severity in SEVERITIES]
-        told = ", ".join(f"{n} {name}" for n, name in zip(counts, SEVERITIES))
-        return f"{count(len(self.runs), 'run')}, {count(samples, 'sample')}: {told}"
+        by_severity = ", ".join(f"{n} {name}" for n, name in zip(counts, SEVERITIES))
+        return f"{counted(len(self.runs), 'run')}, {counted(samples, 'sample')}: {by_severity}"
 
     def _groups(self) -> list[tuple[Finding, list]]:
         """The findings, those of one kind and joint in several runs together, by their first."""
         groups = {}
-        for found in self.findings:
-            key = (found.severity, found.kind, found.where[1])
-            groups.setdefault(key, (found, []))[1].append(found.where[0])
+        for finding in self.findings:
+            key = (finding.severity, finding.kind, finding.where[1])
+            groups.setdefault(key, (finding, []))[1].append(finding.where[0])
         return list(groups.values())
 
 
-def place(found: Finding, runs) -> str:
+def place(finding: Finding, runs) -> str:
     """Where findings are, in words."""
-    joint = found.where[1]
+    joint = finding.where[1]
     of_joint = "" if joint is None else f", {JOINTS[joint]}"
     if runs[0] is None:
         return f"all runs{of_joint}"
@@ -92,18 +96,18 @@ def place(found: Finding, runs) -> str:
     return f"{'runs' if len(numbers) > 1 else 'run'} {shown}{of_joint}"
 
 
-def _rows(found: Finding, runs) -> str:
+def _rows(finding: Finding, runs) -> str:
     """The first rows of a finding, by lines of the file if they are known."""
-    if not len(found.rows):
+    if not len(finding.rows):
         return ""
-    name, numbers = ("row", found.rows) if found.lines is None else ("line", found.lines)
-    where = f"run {found.where[0] + 1}, " if len(runs) > 1 else ""
+    name, numbers = ("row", finding.rows) if finding.lines is None else ("line", finding.lines)
+    where = f"run {finding.where[0] + 1}, " if len(runs) > 1 else ""
     shown = ", ".join(str(int(number)) for number in numbers[:4])
     rest = f" and {len(numbers) - 4:,} more" if len(numbers) > 4 else ""
     return f"({where}{name}{'s' if len(numbers) > 1 else ''} {shown}{rest})"
 
 
-def count(number: int, thing: str) -> str:
+def counted(number: int, thing: str) -> str:
     """A number of things in words: "1 stretch", "2,000 samples"."""
     plural = "es" if thing.endswith("ch") else "s"
     return f"{number:,} {thing}{'' if number == 1 else plural}"
@@ -131,7 +135,7 @@ def in_runs(recording: Recording | Log) -> tuple[LoggedRun, ...]:
     return tuple(LoggedRun(*parts) for parts in zip(names, [t] * len(q), q, tau, lines))
 
 
-def found(run: LoggedRun, kind, severity, where, rows, what, effect, advice) -> Finding:
+def finding(run: LoggedRun, kind, severity, where, rows, what, effect, advice) -> Finding:
     """A finding, with the lines of the file where the run knows them."""
     rows = np.asarray(rows, int)
     lines = None if run is None or run.lines is None else np.asarray(run.lines)[rows]

@@ -26,7 +26,7 @@ class LogWarning(UserWarning):
 
 
 @dataclass
-class _Piece:
+class Piece:
     """Samples of a run without a gap."""
 
     run: str
@@ -35,10 +35,11 @@ class _Piece:
     tau: np.ndarray
     lines: np.ndarray
 
-    def cut(self, part) -> _Piece:
-        return _Piece(self.run, self.t[part], self.q[part], self.tau[part], self.lines[part])
+    def cut(self, part) -> Piece:
+        """Those samples that a slice or a mask picks."""
+        return Piece(self.run, self.t[part], self.q[part], self.tau[part], self.lines[part])
 
-    def at(self, t) -> _Piece:
+    def at(self, t) -> Piece:
         """Interpolated at other times: angles by cubic splines, torques by straight lines."""
         if t.shape == self.t.shape and (t == self.t).all():
             return self
@@ -48,7 +49,7 @@ class _Piece:
         )
         right = np.clip(np.searchsorted(self.t, t), 1, len(self.t) - 1)
         nearest = right - (t - self.t[right - 1] < self.t[right] - t)
-        return _Piece(self.run, t, q, tau, self.lines[nearest])
+        return Piece(self.run, t, q, tau, self.lines[nearest])
 
 
 def resample(
@@ -193,7 +194,7 @@ def _mean_step(steps) -> float:
     return float(steps.mean())
 
 
-def _pieces(log, own, longest_gap, notes) -> tuple[list[_Piece], int]:
+def _pieces(log, own, longest_gap, notes) -> tuple[list[Piece], int]:
     """Runs parted at their gaps, and how many samples were lost in pieces too short to use."""
     pieces, lost = [], 0
     for run, step in zip(log.runs, own):
@@ -211,7 +212,7 @@ def _pieces(log, own, longest_gap, notes) -> tuple[list[_Piece], int]:
             if len(rows) < 3:
                 lost += len(rows)
                 continue
-            piece = _Piece(name, run.t, run.q, run.tau, run.lines)
+            piece = Piece(name, run.t, run.q, run.tau, run.lines)
             pieces.append(piece.cut(rows) if cuts.size else piece)
     if lost:
         notes.append(f"{_times(lost, 'sample')} between gaps left out.")
@@ -220,7 +221,7 @@ def _pieces(log, own, longest_gap, notes) -> tuple[list[_Piece], int]:
     return pieces, lost
 
 
-def _even(pieces, step, trust_stamps, notes) -> tuple[list[_Piece], int]:
+def _even(pieces, step, trust_stamps, notes) -> tuple[list[Piece], int]:
     """All pieces at times with one even step, and how many samples were filled in."""
     fits = [_fit(piece.t) for piece in pieces]
     weights = np.array([len(piece.t) for piece in pieces], float)
@@ -247,7 +248,7 @@ def _even(pieces, step, trust_stamps, notes) -> tuple[list[_Piece], int]:
             )
         if fit.count is not None:  # samples lie on a grid, some of them may be missing
             every = np.arange(fit.count[-1] + 1)
-            on_grid = _Piece(
+            on_grid = Piece(
                 piece.run, piece.t[0] + fit.step * fit.count, piece.q, piece.tau, piece.lines
             )
             if len(every) > n:
@@ -334,7 +335,7 @@ def _grain(t) -> float:
     return 1e-9
 
 
-def _kept(full: _Piece, piece: _Piece, count) -> _Piece:
+def _kept(full: Piece, piece: Piece, count) -> Piece:
     """A filled-in piece with the samples that were there, to the last digit."""
     q, tau = full.q.copy(), full.tau.copy()
     q[count], tau[count] = piece.q, piece.tau
@@ -345,7 +346,7 @@ def _grid(t, step) -> np.ndarray:
     return t[0] + step * np.arange(int((t[-1] - t[0]) / step + 1e-6) + 1)
 
 
-def _low_pass(piece: _Piece, step, target) -> _Piece:
+def _low_pass(piece: Piece, step, target) -> Piece:
     """What a lower rate can hold, by the filter of `scipy.signal.decimate`; no lag.
 
     That filter's gain at rest is 0.994, once there and once back, so it is divided out.
@@ -357,7 +358,7 @@ def _low_pass(piece: _Piece, step, target) -> _Piece:
     return replace(piece, q=q, tau=tau)
 
 
-def _of_one_length(pieces, step, seconds, notes) -> list[_Piece]:
+def _of_one_length(pieces, step, seconds, notes) -> list[Piece]:
     """All pieces cut to one length: `seconds`, or the one that keeps most samples."""
     lengths = np.array([len(piece.t) for piece in pieces])
     if seconds is not None:

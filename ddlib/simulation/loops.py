@@ -26,7 +26,7 @@ from ddlib.simulation.simulate import CONTROL_STEP, follow
 from ddlib.trajectories import Trajectory
 
 
-class _Response(NamedTuple):
+class LoopResponse(NamedTuple):
     """How a position loop answers its reference and a load."""
 
     overshoot: float  #: Of a step of the reference, as a share of the step.
@@ -37,7 +37,7 @@ class _Response(NamedTuple):
 def predicted_response(
     arm: Arm, controller: PID, *, viscous, posture=(0.0, 0.0), joint=0, period=CONTROL_STEP,
     seconds=12.0,
-) -> _Response:  # fmt: skip
+) -> LoopResponse:  # fmt: skip
     """Linear analysis of the sampled loop around a posture (rad), `viscous` friction in N m s/rad.
 
     Gravity's torque in the posture is compensated; what it adds beside it is part of the loop.
@@ -58,13 +58,13 @@ def predicted_response(
     omega = np.geomspace(0.5, 0.1 * np.pi / period, 4000)
     answer = np.abs(loop(np.exp(1j * omega * period))[joint, joint])
     overshoot, compliance = float(step.max() - 1), loop.dcgain()[joint, 2 + joint]
-    return _Response(overshoot, _half_power(omega, answer), compliance)
+    return LoopResponse(overshoot, _half_power(omega, answer), compliance)
 
 
 def simulated_response(
     arm: Arm, controller: PID, *, viscous, posture=(0.0, 0.0), joint=0, period=CONTROL_STEP,
     seconds=12.0, step_deg=1.0, effects: Effects = IDEAL,
-) -> _Response:  # fmt: skip
+) -> LoopResponse:  # fmt: skip
     """The same measures from the full, non-linear simulation, held against gravity in the posture.
 
     One run steps the reference by `step_deg`, a second one carries a load that would displace a
@@ -101,11 +101,11 @@ def simulated_response(
     compliance = (moved[1, -late.size :] * late).sum() / late.sum() / push
     overshoot = float(step.max() - 1)
     if np.ptp(step[-t.size // 10 :]) > 0.01:
-        return _Response(overshoot, np.nan, compliance)
+        return LoopResponse(overshoot, np.nan, compliance)
     # the Fourier transform of the step response's rate is the frequency response
     omega = np.geomspace(0.5, 0.1 * np.pi / period, 400)
     answer = np.abs(np.exp(-1j * np.outer(omega, t[1:])) @ np.diff(step, prepend=0.0))
-    return _Response(overshoot, _half_power(omega, answer), compliance)
+    return LoopResponse(overshoot, _half_power(omega, answer), compliance)
 
 
 def _gravity_stiffness(arm: Arm, posture) -> np.ndarray:

@@ -20,7 +20,7 @@ _PHASE = 0.25
 _POSTURES = np.stack([np.zeros(13), np.linspace(0.0, np.pi, 13)], -1)  # elbows, from straight on
 
 
-class _Plant:
+class Plant:
     """An arm with those effects that act inside it: friction, motor, transmission."""
 
     def __init__(self, arm: Arm, effects: Effects = IDEAL):
@@ -210,7 +210,7 @@ def _holding(B, a, stuck):
     return np.stack([np.where(s1, f1, 0.0), np.where(s2, f2, 0.0)], -1)
 
 
-def _substeps(arm: Arm, effects: Effects, step: float) -> np.ndarray:
+def runge_kutta_steps(arm: Arm, effects: Effects, step: float) -> np.ndarray:
     """Runge-Kutta steps that one control period needs, for each run by itself.
 
     Friction acts like a first-order decay of joint speed, fastest at rest; RK4 is stable up to 2.78
@@ -230,7 +230,7 @@ def _substeps(arm: Arm, effects: Effects, step: float) -> np.ndarray:
 
 
 def _smooth_substeps(arm: Arm, effects: Effects, step: float) -> np.ndarray:
-    """`_substeps` but for frictions with a memory."""
+    """`runge_kutta_steps` but for frictions with a memory."""
     slope = sum((np.asarray(f.slope) for f in effects.friction if hasattr(f, "slope")), np.zeros(2))
     q = _POSTURES
     slope = slope[..., None, :, None] * np.eye(2)

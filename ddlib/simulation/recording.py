@@ -13,7 +13,7 @@ from ddlib.dynamics import Arm
 from ddlib.trajectories import Trajectory
 
 
-def _equal_steps(t) -> float:
+def equal_step(t) -> float:
     """The step of equally spaced times."""
     step = float(t[1] - t[0])
     if step <= 0 or not np.allclose(np.diff(t), step, rtol=1e-6, atol=0.0):
@@ -55,7 +55,7 @@ class Recording:
     @property
     def step(self) -> float:
         """Sampling period of the log, s; a ValueError if the samples are not equally spaced."""
-        return _equal_steps(self.t)
+        return equal_step(self.t)
 
     @property
     def motion(self) -> slice:
@@ -134,7 +134,7 @@ def rms(x, axis: int = -2) -> np.ndarray:
     return np.sqrt(np.mean(finite_array("x", x) ** 2, axis))
 
 
-class _Score(NamedTuple):
+class Score(NamedTuple):
     """What a controller made of a motion; every field has the shape of the recording's runs."""
 
     largest: np.ndarray  #: Largest error of a joint, degrees.
@@ -145,7 +145,7 @@ class _Score(NamedTuple):
     effort: np.ndarray  #: Root mean square of the torque vector over the motion, N m.
 
 
-def score(arm: Arm, recording: Recording, seconds: float | None = None) -> _Score:
+def score(arm: Arm, recording: Recording, seconds: float | None = None) -> Score:
     """Errors and effort of every run over a motion of `seconds`, or as the recording says.
 
     Errors of the joints, degrees: the `largest`, the `whole` (root mean square) and `settled`, that
@@ -165,7 +165,7 @@ def score(arm: Arm, recording: Recording, seconds: float | None = None) -> _Scor
     )
     gap = 1e3 * np.linalg.norm(hand - wanted, axis=-1)
     half = int(np.argmin(np.abs(t - (begin + end) / 2)))
-    return _Score(
+    return Score(
         largest=np.abs(error[..., moving, :]).max((-2, -1)),
         whole=np.sqrt((error[..., moving, :] ** 2).mean((-2, -1))),
         settled=np.sqrt((error[..., settled, :] ** 2).mean((-2, -1))),

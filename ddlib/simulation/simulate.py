@@ -20,9 +20,9 @@ from ddlib._check import (
 from ddlib.control import Controller, as_controller
 from ddlib.dynamics import Arm
 from ddlib.effects import IDEAL, Effects
-from ddlib.effects.real_arm import _started
-from ddlib.simulation.plant import _Plant, _substeps
-from ddlib.simulation.recording import Recording, _equal_steps
+from ddlib.effects.real_arm import signal_path
+from ddlib.simulation.plant import Plant, runge_kutta_steps
+from ddlib.simulation.recording import Recording, equal_step
 from ddlib.trajectories import MOTION_SECONDS, Trajectory, pick_and_place, time_grid
 
 # The page Provenance shows these notes.
@@ -70,7 +70,7 @@ def _generator(seed):
     return _Streams(seeds)
 
 
-def _held(plant: _Plant, x, v, tau, seconds, parts):
+def _held(plant: Plant, x, v, tau, seconds, parts):
     """Positions and velocities after `seconds` under constant torque, in `parts` steps a run."""
     most = int(np.max(parts))
     if np.min(parts) == most:
@@ -97,7 +97,7 @@ def free_motion(arm: Arm, q, qd, seconds, step=0.001, effects: Effects = IDEAL):
     if abs(count - round(count)) > 1e-6:
         raise ValueError(f"seconds must be a whole number of steps, got {count:g}")
     t = np.arange(round(count) + 1) * step
-    plant = _Plant(arm, effects)
+    plant = Plant(arm, effects)
     x, v = _moving(plant, q, qd)
     states = [(x, v)]
     zero = np.zeros_like(q)
@@ -122,7 +122,7 @@ def _check_plant(arm, effects) -> None:
         )
 
 
-def _moving(plant: _Plant, q, qd):
+def _moving(plant: Plant, q, qd):
     """Positions and velocities of a plant whose motors turn like the joints behind them."""
     x, v = plant.rest(q)
     return x, v + (np.concatenate([qd, qd], -1) if v.shape[-1] == 4 else qd)
@@ -176,7 +176,7 @@ def follow(
     names = ("reference.qd", "reference.qdd")
     reference = Trajectory(q, *(shaped(n, x, q.shape) for n, x in zip(names, reference[1:])))
     controller = as_controller(controller)
-    step = _equal_steps(t)
+    step = equal_step(t)
     integer("log_every", log_every, 1, t.size - 1)
     one_of("velocity", velocity, ("tachometer", "difference"))
     late = effects.computing_time
@@ -190,11 +190,13 @@ def follow(
     start = _initial_state(first, (first, np.zeros(2)) if start is None else start)
     rng = _generator(seed)
     law = controller.start(reference, step)
-    plant, parts = _Plant(arm, effects), _substeps(arm, effects, step)
+    plant, parts = Plant(arm, effects), runge_kutta_steps(arm, effects, step)
     x, v = _moving(plant, *start)
     tau = np.zeros_like(start[0])
-    encoder = _started(effects.encoder, x[..., -2:])
-    actuator, torque_sensor = (_started(e, tau) for e in (effects.actuator, effects.torque_sensor))
+    encoder = signal_path(effects.encoder, x[..., -2:])
+    actuator, torque_sensor = (
+        signal_path(e, tau) for e in (effects.actuator, effects.torque_sensor)
+    )
     reading = encoder(x[..., -2:] - step * v[..., -2:], rng)  # one period ago
     log = []
     for k in range(t.size):

@@ -19,7 +19,7 @@ from ddlib.analysis import (
     purest,
     shares,
 )
-from ddlib.analysis.filters import _NAMED_CLASSES
+from ddlib.analysis.filters import NAMED_CLASSES
 from ddlib.learning import TorqueModel, Weights
 from ddlib.widgets.base import SCRIPT, STYLE, Panel, module
 from ddlib.widgets.hinton import (
@@ -162,7 +162,7 @@ def _named(weights: Mapping[int, Weights], members: Sequence[int], sized: bool) 
     every = weights[width].hidden_weights[list(members)]
     names = classify(every)
     presets = {}
-    for name in _NAMED_CLASSES:
+    for name in NAMED_CLASSES:
         if (names == name).any():
             place = np.argwhere((every == purest(every, name)).all(-1))[0]
             member, unit, joint = map(int, place)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ddlib.analysis import explained, followed, gains, mean_gradient, savitzky_golay
+from ddlib.analysis import explained, filter_responses, gains, mean_gradient, savitzky_golay
 from ddlib.learning import Scaler, TorqueModel, Weights
 
 RNG = np.random.default_rng(0)
@@ -40,7 +40,7 @@ def test_shares_of_a_known_mixture():
     f = np.array([[[1.0, 2.0, 4.0]]])
     gain = np.array([[1, 1, 1], X[:3], X[:3] ** 2 / 2]) @ f[0, 0]
     part = (gain * (0.3, 0.5, 4.0)) ** 2
-    found = followed(f, windows, states)
+    found = filter_responses(f, windows, states)
     np.testing.assert_allclose(found.alone[0, 0], part / part.sum(), atol=5e-3)
     np.testing.assert_allclose(found.unique[0, 0], part / part.sum(), atol=5e-3)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ddlib.analysis import ablation, match, refitted, saturated
+from ddlib.analysis import ablation, matched_units, refitted, saturated
 from ddlib.learning import TorqueModel, TrainingSet, Weights
 from ddlib.metrics import rmss
 
@@ -48,16 +48,16 @@ def test_matching_finds_a_permutation_with_mirrors():
     order = np.array([3, 0, 4, 1, 2])
     second = first[:, order].copy()
     second[:, 1] = 1 - second[:, 1]
-    partner, alike = match(first, second)
+    partner, alike = matched_units(first, second)
     np.testing.assert_array_equal(order[partner], np.arange(5))
     np.testing.assert_allclose(alike, 1)
-    strangers = match(first, RNG.uniform(size=(200, 5)))[1]
+    strangers = matched_units(first, RNG.uniform(size=(200, 5)))[1]
     assert strangers.max() < 0.4
     still = first.copy()
     still[:, 0] = 0.5
-    assert match(still, first)[1].min() == 0
+    assert matched_units(still, first)[1].min() == 0
     with pytest.raises(ValueError, match="first and second must both have shape"):
-        match(first, first[:, :3])
+        matched_units(first, first[:, :3])
 
 
 def test_refitted_layer_is_least_squares_with_a_constant():

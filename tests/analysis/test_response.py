@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ddlib.analysis import calibrated, heard, savitzky_golay, unit_inputs
+from ddlib.analysis import calibrated, savitzky_golay, unit_inputs, unit_responses
 from ddlib.learning import Scaler, TorqueModel, Weights
 from ddlib.simulation import LOG_STEP
 
@@ -16,7 +16,7 @@ def test_shares_of_independent_quantities_add_up():
     states, noise = q[:, :8].reshape(400, 2, 4), q[:, 8]
     parts = np.array([[0.1, 0.3, 0.5, 0.2], [0.2, 0.1, 0.4, 0.6]])
     y = (states * parts).sum((1, 2)) + 0.3 * noise
-    found = heard(np.stack([y, 5 + 2 * y, states[:, 1, 1]], -1)[None], states)
+    found = unit_responses(np.stack([y, 5 + 2 * y, states[:, 1, 1]], -1)[None], states)
     power = (parts**2).sum() + 0.09
     assert found.alone.shape == (1, 3, 4) and found.together.shape == (1, 3)
     for unit in (0, 1):
@@ -31,7 +31,7 @@ def test_what_two_quantities_share_is_nobodys_own():
     """Position and acceleration proportional: each explains all, neither anything of its own."""
     states = RNG.normal(size=(300, 2, 4))
     states[..., 2] = -4 * states[..., 0] + 1e-3 * RNG.normal(size=(300, 2))
-    found = heard(states[:, :1, 0], states)
+    found = unit_responses(states[:, :1, 0], states)
     assert found.alone[0, [0, 2]] == pytest.approx(1, abs=1e-4)
     assert found.unique[0].max() < 1e-4
 

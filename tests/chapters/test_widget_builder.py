@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from widget_pages import LESSONS, NEXT_FRAME, copied, functions, opened
 
-from ddlib.analysis import followed, frequency_response
+from ddlib.analysis import filter_responses, frequency_response
 from ddlib.dynamics import CMU_DD_ARM_II, with_load
 from ddlib.effects import IDEAL
 from ddlib.setups import JOINT_DAMPING
@@ -51,12 +51,12 @@ def test_a_readers_own_arm_without_an_encoder():
 
 
 def test_the_error_is_what_is_left_of_the_acceleration():
-    """1 - error^2 is the squared correlation of the chapter's `followed`."""
+    """1 - error^2 is the squared correlation of the chapter's `filter_responses`."""
     f = drawn(4)
     states = np.zeros((len(builder.readings()[1]), 1, 3))
     states[:, 0, 2] = builder.readings()[1]
     states[:, 0, :2] = np.random.default_rng(0).normal(size=(len(states), 2))
-    alone = followed(f[:, None], builder.windows()[:, None], states).alone[:, 0, 2]
+    alone = filter_responses(f[:, None], builder.windows()[:, None], states).alone[:, 0, 2]
     np.testing.assert_allclose([1 - builder.score(one) ** 2 for one in f], alone, atol=1e-9)
     assert builder.score(np.zeros(21)) == pytest.approx(1, abs=1e-12)
 

@@ -13,7 +13,7 @@ from ddlib.dynamics import (
     PUMA_560_ROTORS,
     SerialArm,
     SpatialLink,
-    hand,
+    hand_position,
     inertial_parameters,
     lagrange_euler,
     locked,
@@ -109,7 +109,9 @@ def test_a_locked_arm_is_the_whole_one_at_rest_beyond(joints):
     arm = locked(DD_ARM_II_IN_SPACE, joints)
     tau = DD_ARM_II_IN_SPACE.inverse_dynamics(*whole)[:, :joints]
     np.testing.assert_allclose(arm.inverse_dynamics(*motion), tau, atol=1e-12 * np.abs(tau).max())
-    np.testing.assert_allclose(hand(arm, motion[0]), hand(DD_ARM_II_IN_SPACE, whole[0]), atol=1e-14)
+    np.testing.assert_allclose(
+        hand_position(arm, motion[0]), hand_position(DD_ARM_II_IN_SPACE, whole[0]), atol=1e-14
+    )
 
 
 @pytest.mark.parametrize("name", ARMS)

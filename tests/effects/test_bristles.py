@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.effects import Effects, LuGreFriction, ViscousFriction
 from ddlib.simulation import follow, free_motion
-from ddlib.simulation.plant import _Plant, _substeps
+from ddlib.simulation.plant import Plant, runge_kutta_steps
 from ddlib.trajectories import Trajectory
 
 LAW = LuGreFriction((0.5, 0.15), (0.7, 0.2), 0.02, (800.0, 250.0), (4.0, 1.2))
@@ -19,8 +19,8 @@ EFFECTS = Effects(friction=(OIL, LAW))
 
 def pushed(torque, steps, step=0.002, effects=EFFECTS, parts=None):
     """Angles and velocities of an arm at rest, under a torque of the time held for each step."""
-    plant, (x, v) = _Plant(ARM, effects), (np.zeros(2), np.zeros(2))
-    parts = parts or int(_substeps(ARM, effects, step))
+    plant, (x, v) = Plant(ARM, effects), (np.zeros(2), np.zeros(2))
+    parts = parts or int(runge_kutta_steps(ARM, effects, step))
     path = []
     for k in range(steps):
         for _ in range(parts):
@@ -52,7 +52,7 @@ def swing(t):
 
 def test_bristles_follow_their_equation_and_converge_in_second_order():
     wanted = exact(swing, 150)
-    parts = int(_substeps(ARM, EFFECTS, 0.002))
+    parts = int(runge_kutta_steps(ARM, EFFECTS, 0.002))
     errors = [np.abs(pushed(swing, 150, parts=n * parts)[0] - wanted[0]).max() for n in (1, 2, 4)]
     assert np.abs(wanted[0]).max() > 0.03 and errors[0] < 2e-4
     assert (np.log2(np.divide(errors[:-1], errors[1:])) > 1.5).all()
@@ -106,7 +106,7 @@ def test_no_run_depends_on_another():
         control = lambda wanted, q, qd: 40 * (wanted.q - q) - 2 * qd  # noqa: E731
         return follow(ARM, control, reference, t, effects=Effects(friction=(law,))).q_true
 
-    assert _substeps(ARM, Effects(friction=(both,)), 0.002).shape == (2,)
+    assert runge_kutta_steps(ARM, Effects(friction=(both,)), 0.002).shape == (2,)
     together = drive(both, asked)
     for k, law in enumerate(laws):
         np.testing.assert_allclose(together[k], drive(law, asked[k]), rtol=0, atol=1e-13)

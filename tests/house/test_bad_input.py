@@ -129,13 +129,13 @@ def _calls():
         (ARM.regressor, dict(q=STATE[0], qd=STATE[1], qdd=STATE[2])),
         (ARM.forward_kinematics, dict(q=STATE[0])),
         (dynamics.with_load, dict(arm=ARM, mass=2.0)),
-        (dynamics.count, dict(
+        (dynamics.count_operations, dict(
             formulation=dynamics.newton_euler, arm=PUMA_560.first(2), knowledge="arm"
         )),
         (dynamics.derive, dict(links=2, gravity=True)),
         (dynamics.derive(2).base_values, dict(links=[LINK, LINK], gravity=9.81)),
-        (dynamics.table, dict(joints=[1, 2], link=LINK)),
-        (dynamics.hand, dict(arm=PUMA_560, q=np.zeros(6))),
+        (dynamics.operations_table, dict(joints=[1, 2], link=LINK)),
+        (dynamics.hand_position, dict(arm=PUMA_560, q=np.zeros(6))),
         (dynamics.inertial_parameters, dict(link=PUMA_560.links[0])),
         (dynamics.locked, dict(arm=dynamics.DD_ARM_II_IN_SPACE, joints=2)),
         (dynamics.mass_matrix, dict(arm=PUMA_560, q=np.zeros(6))),
@@ -268,7 +268,7 @@ def _calls():
         (learning.Directions.of, dict(data=set_)),
         (learning.effective_steps, dict(rates=FILTER**2, epochs=[1, 5], momentum=0.5, warm_up=2)),
         (learning.jacobian, dict(weights=net, x=set_.x)),
-        (learning.moved, dict(weights=net, change=np.zeros(net.count(biases=True)))),
+        (learning.with_change, dict(weights=net, change=np.zeros(net.count(biases=True)))),
         (learning.with_ones, dict(x=set_.x)),
         (learning.p_value, dict(value=0.5, draws=FILTER, side="two")),
         (learning.related, dict(target=torque, windows=x)),
@@ -317,11 +317,11 @@ def _calls():
         (analysis.shares, dict(f=FILTER)),
         (analysis.upright, dict(f=FILTER)),
         (_explained, dict(target=FILTER, by=FILTER**2)),
-        (analysis.followed, dict(f=net.hidden_weights, windows=few, states=states())),
+        (analysis.filter_responses, dict(f=net.hidden_weights, windows=few, states=states())),
         (analysis.gains, dict(f=FILTER, step=0.01)),
         (analysis.mean_gradient, dict(model=model(), windows=x)),
         (analysis.ablation, dict(model=single, windows=x, torque=torque)),
-        (analysis.match, dict(first=activity, second=activity)),
+        (analysis.matched_units, dict(first=activity, second=activity)),
         (analysis.net_inputs, dict(model=model(), windows=x)),
         (analysis.refitted, dict(features=set_.x[:, 0], torque=torque, held_out=set_.x[:, 0],
                                  answer=torque)),
@@ -332,7 +332,7 @@ def _calls():
             arm=ARM, deviation=pair, width=7, bits=16.0, torque_noise=0.1, period=0.01
         )),
         (analysis.calibrated, dict(model=model(), windows=x, step=0.01)),
-        (analysis.heard, dict(outputs=activity[: len(states())], states=states())),
+        (analysis.unit_responses, dict(outputs=activity[: len(states())], states=states())),
         (analysis.unit_inputs, dict(model=model(), windows=x)),
         (analysis.input_shares, dict(weights=net)),
         (analysis.responses, dict(model=model(), values=FILTER)),
@@ -376,7 +376,8 @@ LABELS = ("time, s", "torque, N m")
 RAGGED, EMPTY = [1.0, [2.0, 3.0]], np.zeros(0)
 NEVER = (object(), "text", 1j)
 FREE = {"name", "alt", "label", "x_label", "y_label"}  # texts of which any will do
-HASHED = {"count", "derive"}  # they keep their answers, so Python refuses a list by itself
+# They keep their answers, so Python refuses a list by itself
+HASHED = {"count_operations", "derive"}
 OPTIONAL = {
     "x",
     "start",

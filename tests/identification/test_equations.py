@@ -25,11 +25,11 @@ from ddlib.identification import (
     by_differences,
     by_modulation,
     by_smoothing,
-    equations as equations_module,
     least_squares,
     repeat,
     true_parameters,
 )
+from ddlib.identification.averaging import acting_time, bumps_held
 from ddlib.simulation import record
 from ddlib.trajectories import APPENDIX_I
 
@@ -129,9 +129,9 @@ def test_a_torque_counts_over_the_time_in_which_it_acts():
     """The means of the bumps against their antiderivative: held at once, and late."""
     run = record(CMU_DD_ARM_II, SMOOTH, TRAINING[0], control_step=0.005, log_step=0.005)
     late = replace(run, computing_time=0.003)
-    assert equations_module._acting(run, None) == (0.0, pytest.approx(0.005))
-    assert equations_module._acting(late, None) == (pytest.approx(-0.002), pytest.approx(0.005))
-    assert equations_module._acting(late, 0.004) == (0.0, 0.004)
+    assert acting_time(run, None) == (0.0, pytest.approx(0.005))
+    assert acting_time(late, None) == (pytest.approx(-0.002), pytest.approx(0.005))
+    assert acting_time(late, 0.004) == (0.0, 0.004)
     t, width, length = np.arange(0.0, 1.5, 0.005), 0.3, 1.5
     shape = BSpline.basis_element(width / 6 * np.arange(7), extrapolate=False)
     whole = shape.antiderivative()
@@ -140,7 +140,7 @@ def test_a_torque_counts_over_the_time_in_which_it_acts():
         ends = (np.clip(t + begin + x - first, 0, width) for x in (hold, 0.0))
         after, before = (whole(np.minimum(end, width * (1 - 1e-12))) for end in ends)
         exact = (after - before) / hold
-        found = equations_module._held(t, width, length, begin, hold)
+        found = bumps_held(t, width, length, begin, hold)
         np.testing.assert_allclose(found, exact, rtol=0, atol=1e-6 * exact.max())
 
 

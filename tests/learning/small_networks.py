@@ -3,7 +3,7 @@
 import numpy as np
 
 from ddlib.learning import sliding_windows
-from ddlib.learning.network import _FIELDS
+from ddlib.learning.network import WEIGHT_NAMES
 
 WIDTH = 7
 
@@ -20,9 +20,9 @@ def smooth_cases(n=80, seed=0, noise=0.0):
 
 
 def parts(weights):
-    return [getattr(weights, name) for name in _FIELDS]
+    return [getattr(weights, name) for name in WEIGHT_NAMES]
 
 
 def close(weights, wanted, rtol, atol=0.0):
-    for name, own, w in zip(_FIELDS, parts(weights), wanted):
+    for name, own, w in zip(WEIGHT_NAMES, parts(weights), wanted):
         np.testing.assert_allclose(own, w, rtol=rtol, atol=atol, err_msg=name)

@@ -16,8 +16,8 @@ from ddlib.learning import (
     Weights,
     solve,
 )
-from ddlib.learning.gauss_newton import _Objective
-from ddlib.learning.network import _FIELDS
+from ddlib.learning.gauss_newton import Objective
+from ddlib.learning.network import WEIGHT_NAMES
 from ddlib.metrics import rmss
 
 HIDDEN = 3
@@ -33,9 +33,9 @@ def flat(weights) -> np.ndarray:
 
 
 def shaped(vector, like) -> list[torch.Tensor]:
-    sizes = [getattr(like, name).size for name in _FIELDS]
+    sizes = [getattr(like, name).size for name in WEIGHT_NAMES]
     parts = torch.split(torch.as_tensor(vector, dtype=torch.float64), sizes)
-    return [part.reshape(getattr(like, name).shape) for part, name in zip(parts, _FIELDS)]
+    return [part.reshape(getattr(like, name).shape) for part, name in zip(parts, WEIGHT_NAMES)]
 
 
 def unflat(vector, like) -> Weights:
@@ -85,7 +85,7 @@ def test_value_gradient_and_matrix_are_those_of_autograd(hidden, outputs, decay,
     mixed = np.random.default_rng(0).normal(size=(2, outputs))
     data = TrainingSet.from_arrays(windows, torque @ mixed)
     w = Weights.random(1, WIDTH, hidden, 2, outputs, initial=1.0, seed=hidden)[0]
-    objective = _Objective(w, data, decay, whiten=whiten)
+    objective = Objective(w, data, decay, whiten=whiten)
     vector, rest = objective.pack(w), (w, data, decay)
     value, gradient = by_hand(*rest)
     j, bent = jacobian(flat(w), *rest), hessian(flat(w), *rest)
@@ -148,7 +148,7 @@ def test_a_step_for_white_inputs_does_not_see_a_linear_change_of_the_inputs(data
     for whiten in (True, False):
         told = []
         for weights, cases in ((w, data), (replace(w, **own), replace(data, x=data.x @ mix))):
-            objective = _Objective(weights, cases, whiten=whiten)
+            objective = Objective(weights, cases, whiten=whiten)
             vector = objective.pack(weights)
             matrix, gradient, _ = objective.normal(vector)
             matrix = matrix.tril() + matrix.tril(-1).T + torch.eye(len(matrix))

@@ -9,7 +9,7 @@ from hypothesis import given, settings, strategies as st
 
 from ddlib import paper
 from ddlib.learning import Scaler, TorqueModel, Weights, WindowNetwork
-from ddlib.learning.network import _FIELDS
+from ddlib.learning.network import WEIGHT_NAMES
 
 RNG = np.random.default_rng(2)
 
@@ -97,7 +97,7 @@ def test_counts():
 @given(seed=st.integers(0, 50), k=st.integers(0, 4))
 def test_a_member_depends_on_its_own_seed_only(seed, k):
     many, alone = Weights.random(5, 5, seed=seed), Weights.random(1, 5, seed=seed + k)
-    for name in _FIELDS:
+    for name in WEIGHT_NAMES:
         np.testing.assert_array_equal(getattr(many, name)[k], getattr(alone, name)[0])
     assert not np.array_equal(many.hidden_weights[k], many.hidden_weights[k - 1])
 
@@ -123,7 +123,7 @@ def test_a_file_keeps_the_model(tmp_path, pick):
     model(2).save(path)  # is replaced
     saved.save(path)
     loaded = TorqueModel.load(path)
-    for name in _FIELDS:
+    for name in WEIGHT_NAMES:
         before, after = getattr(saved.weights, name), getattr(loaded.weights, name)
         np.testing.assert_array_equal(after, before.astype(np.float32))
     for name in ("inputs", "outputs"):

@@ -15,8 +15,8 @@ from ddlib.learning import (
     WindowNetwork,
     effective_steps,
     jacobian,
-    moved,
     rows,
+    with_change,
     with_ones,
 )
 
@@ -166,7 +166,7 @@ def test_refusals(data):
     for call, words in (
         (lambda: effective_steps([-1.0], [1]), "rates must not be negative"),
         (lambda: effective_steps([1.0], [2, 1]), "epochs must not decrease"),
-        (lambda: moved(start(), np.zeros((3, 97))), r"change must have shape \(\.\.\., 98\)"),
+        (lambda: with_change(start(), np.zeros((3, 97))), r"change must have shape \(\.\.\., 98\)"),
         (lambda: Lazy(Weights.random(2, WIDTH), data), "weights must be of one network"),
     ):
         with pytest.raises(ValueError, match=words):

@@ -20,7 +20,7 @@ from ddlib.learning import (
     train,
     train_ensemble,
 )
-from ddlib.learning.training import _check_points
+from ddlib.learning.training import recorded_epochs
 from ddlib.metrics import rmss
 from ddlib.setups import STATE_FEEDBACK
 
@@ -69,7 +69,7 @@ def test_history_and_snapshots_are_those_of_their_epochs(data, other):
     model, history, kept = train_ensemble(
         start, data, test=other, epochs=40, snapshots=snapshots, **options
     )
-    np.testing.assert_array_equal(history.epochs, _check_points(40))
+    np.testing.assert_array_equal(history.epochs, recorded_epochs(40))
     assert history.training.shape == history.test.shape == (len(history.epochs), 5)
     assert tuple(kept) == snapshots
     close(kept[0], parts(start), rtol=0)
@@ -88,7 +88,7 @@ def test_history_and_snapshots_are_those_of_their_epochs(data, other):
 def test_slope_of_a_power_law_is_its_exponent_and_small_ones_are_settled(power, start):
     """Fast descent that has stopped by half the epochs counts as stopped."""
     history = History()
-    for epoch in _check_points(20_000):
+    for epoch in recorded_epochs(20_000):
         history.append(int(epoch), [start * epoch**power, 1.0, 1.0 / min(epoch, 5000)])
     np.testing.assert_allclose(history.slope(), [power, 0.0, 0.0], atol=1e-9)
     assert history.settled()[1:].all() and history.settled(2.1).all()
@@ -128,7 +128,7 @@ def test_divergence_is_an_error_that_keeps_the_history_and_gives_threads_back(da
     start = with_member(Weights.random(1, WIDTH), 0, np.nan)
     with pytest.raises(TrainingDiverged, match=r"after 30 epochs: lower the rate \(2\.5\)") as info:
         train_ensemble(start, data, rate=2.5, epochs=30, progress=False)
-    np.testing.assert_array_equal(info.value.history.epochs, _check_points(30))
+    np.testing.assert_array_equal(info.value.history.epochs, recorded_epochs(30))
     assert info.value.history.derailed.all()
     train_ensemble(Weights.random(3, WIDTH), data, epochs=3, progress=False)
     assert torch.get_num_threads() == 2

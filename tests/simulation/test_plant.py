@@ -15,7 +15,7 @@ from ddlib.effects import (
     ViscousFriction,
 )
 from ddlib.simulation import free_motion
-from ddlib.simulation.plant import _Plant, _substeps
+from ddlib.simulation.plant import Plant, runge_kutta_steps
 
 ARM = CMU_DD_ARM_II
 STICKY = StickSlipFriction((0.5, 0.15), (0.65, 0.2))
@@ -55,7 +55,7 @@ def test_runge_kutta_is_of_fourth_order():
     exact = solve_ivp(rate, (0, 0.4), start, "DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
     errors = []
     for steps in (10, 20, 40):
-        q, qd = march(_Plant(arm, effects), start[:2], start[2:], tau, 0.4 / steps, steps)
+        q, qd = march(Plant(arm, effects), start[:2], start[2:], tau, 0.4 / steps, steps)
         errors.append(np.linalg.norm([*q[-1], *qd[-1]] - exact))
     order = np.log2(np.array(errors[:-1]) / errors[1:])
     np.testing.assert_allclose(order, 4.0, atol=0.4)
@@ -80,7 +80,7 @@ SHORT_OF_ONE = st.floats(-1 + 1e-9, 1 - 1e-9)
 @given(q=PAIR, share=st.tuples(SHORT_OF_ONE, SHORT_OF_ONE).map(np.array))
 def test_a_stuck_arm_does_not_move_at_all(q, share):
     """Below the breakaway torque friction equals the applied torque, and does no work."""
-    x, v = march(_Plant(ARM, stick()), q, np.zeros(2), share * STICKY.breakaway, 0.002, 20)
+    x, v = march(Plant(ARM, stick()), q, np.zeros(2), share * STICKY.breakaway, 0.002, 20)
     assert (x == q).all() and not v.any()
 
 
@@ -89,7 +89,7 @@ def test_a_stuck_arm_does_not_move_at_all(q, share):
 def test_friction_at_rest_is_as_large_as_it_has_to_be_and_no_larger(q, tau):
     """What friction was follows from the motion: within its limits, and at them if it moves."""
     step = 1e-6
-    _, v = _Plant(ARM, stick()).advance(q, np.zeros(2), tau, step)
+    _, v = Plant(ARM, stick()).advance(q, np.zeros(2), tau, step)
     friction = tau - ARM.inverse_dynamics(q, np.zeros(2), v / step)
     limit = np.array(STICKY.breakaway)
     assert (np.abs(friction) <= limit + 1e-5).all()
@@ -104,7 +104,7 @@ def test_friction_at_rest_is_as_large_as_it_has_to_be_and_no_larger(q, tau):
 def test_friction_never_creates_energy(arm, flexible):
     shaft = FlexibleJoint((2e3, 6e2), (0.2, 0.02))
     friction = StickSlipFriction((5.0, 1.5), (7.0, 2.0))
-    plant = _Plant(arm, stick(friction, transmission=(shaft,) if flexible else ()))
+    plant = Plant(arm, stick(friction, transmission=(shaft,) if flexible else ()))
     q, qd = np.random.default_rng(1).uniform(-3, 3, (2, 40, 2))
     x, v = plant.rest(q)
     v = v + (np.tile(qd, 2) if flexible else qd)
@@ -134,7 +134,7 @@ def test_stick_slip_against_its_closed_form():
 
     def simulated(step):
         """Errors of the first stop, of the rest that follows, and of the jumps."""
-        plant, x, v, path = _Plant(ARM, stick(friction)), np.zeros(2), np.zeros(2), []
+        plant, x, v, path = Plant(ARM, stick(friction)), np.zeros(2), np.zeros(2), []
         for n in range(round((breakaway / k / pull + 2.2 * slip + rest) / step)):
             middle = pull * (n + 0.5) * step - x[0] - 0.5 * step * v[0]  # of a held torque
             x, v = plant.advance(x, v, np.array([k * middle, 0.0]), step)
@@ -159,7 +159,7 @@ def test_springs_and_rotors_keep_their_energy(arm, gap):
     x = np.array([[0.3, 0.5, 0.32, 0.4], [-1.0, 2.0, -1.0, 2.0]])
     v = np.array([[1.0, -0.5, 0.0, 3.0], [0.8, 1.5, -2.0, 1.5]])
     step = 1e-4 if gap[0] else 5e-4
-    states = march(_Plant(arm, Effects(transmission=(shaft,))), x, v, np.zeros(2), step, 3000)
+    states = march(Plant(arm, Effects(transmission=(shaft,))), x, v, np.zeros(2), step, 3000)
     energy = total_energy(arm, shaft, *states)
     np.testing.assert_allclose(energy, np.tile(energy[0], (3001, 1)), rtol=2e-4)
     twist = np.abs(states[0][..., 2:] - states[0][..., :2])
@@ -177,8 +177,8 @@ def test_substeps_agree_with_an_implicit_solver():
 
     start = np.array([0.0, 0.3, 1.0, -2.0])
     implicit = solve_ivp(slide, (0, 1.0), start, method="Radau", rtol=1e-9, atol=1e-11).y[:, -1]
-    parts = int(_substeps(IMI_ARM, effects, 0.002))
-    assert parts > 4 and _substeps(CMU_DD_ARM_II, Effects(), 0.002) == 1
+    parts = int(runge_kutta_steps(IMI_ARM, effects, 0.002))
+    assert parts > 4 and runge_kutta_steps(CMU_DD_ARM_II, Effects(), 0.002) == 1
     _, q, _ = free_motion(IMI_ARM, start[:2], start[2:], 1.0, 0.002 / parts, effects)
     assert np.allclose(q[-1], implicit[:2], atol=1e-5)
     _, wild, _ = free_motion(IMI_ARM, start[:2], start[2:], 1.0, 0.002, effects)

@@ -215,10 +215,10 @@ class Descent:
         return errors
 
     def weights(self):
-        from ddlib.learning.network import _from_rows
+        from ddlib.learning.network import from_rows
 
         first = self.first.reshape(self.members, self.rows, -1).copy()
-        return _from_rows(first, self.second.copy(), self.shape)
+        return from_rows(first, self.second.copy(), self.shape)
 
 
 def start() -> None:

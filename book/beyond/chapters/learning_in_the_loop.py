@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 from scipy.signal import butter, cont2discrete, lfilter, sosfiltfilt
 
-from ddlib.dynamics import CMU_DD_ARM_II, PUMA_560, count, newton_euler
+from ddlib.dynamics import CMU_DD_ARM_II, PUMA_560, count_operations, newton_euler
 from ddlib.figures import COLOURS, FAINT, INK, Illustration, check_label, illustrate, legend_above
 from ddlib.setups import KD, KP
 from ddlib.simulation import CONTROL_STEP
@@ -312,7 +312,7 @@ def affordable(learner: str) -> Measured:
     """Multiplications of torque and learning over what 1986 did in a control period."""
     each = multiplications()
     total = each["torque"] + (each[learner] if learner != "torque" else 0.0)
-    could = count(newton_euler, PUMA_560, "arm").multiplications * 2.0 / 1.2
+    could = count_operations(newton_euler, PUMA_560, "arm").multiplications * 2.0 / 1.2
     return Measured(total / could, f"{total:,.0f} of {could:,.0f} in 2 ms")
 
 

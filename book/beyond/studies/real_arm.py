@@ -30,7 +30,7 @@ from ddlib.analysis import (
     LAYERS,
     classify,
     explained,
-    followed,
+    filter_responses,
     gains,
     mean_gradient,
     shares,
@@ -148,7 +148,7 @@ def _described(model: TorqueModel, data: Windowed, targets) -> dict:
         for layer, at in LAYERS.items()
     }
     error = ((model.torque(data.x) - targets) ** 2).mean(-2) / targets.var(-2)
-    unique = followed(w.direct_weights, data.x, data.states).unique[:, own, own]
+    unique = filter_responses(w.direct_weights, data.x, data.states).unique[:, own, own]
     return {
         "error": np.sqrt(error.mean(-1)),
         "velocity": whole[:, own, own, 1],

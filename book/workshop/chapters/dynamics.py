@@ -276,11 +276,11 @@ def terms() -> Measured:
 def multiplications() -> Measured:
     """Fewest multiplications by the recursive Lagrangian form of six joints; by others."""
     recursive, zeros, custom = (
-        costs.count(recursive_lagrange, PUMA_560, known).multiplications
+        costs.count_operations(recursive_lagrange, PUMA_560, known).multiplications
         for known in costs.KNOWLEDGE
     )
-    closed = costs.count(lagrange_euler, PUMA_560).multiplications
-    newton = costs.count(newton_euler, PUMA_560).multiplications
+    closed = costs.count_operations(lagrange_euler, PUMA_560).multiplications
+    newton = costs.count_operations(newton_euler, PUMA_560).multiplications
     two = costs.count_closed_form(_LINKS, shared=True).multiplications
     text = f"Lagrangian form of six joints: closed {closed:,}, recursive {recursive:,}, "
     text += f"{zeros:,} with its zeros known, {custom:,} customised to the Puma; "
@@ -291,7 +291,7 @@ def multiplications() -> Measured:
 def recursion() -> Measured:
     """How many times fewer multiplications the recursive Lagrangian form needs, six joints."""
     ways = lagrange_euler, recursive_lagrange, newton_euler
-    closed, lagrange, newton = (costs.count(f, PUMA_560).multiplications for f in ways)
+    closed, lagrange, newton = (costs.count_operations(f, PUMA_560).multiplications for f in ways)
     text = f"six joints: {closed / lagrange:.0f} times fewer multiplications, "
     return Measured(closed / lagrange, f"{text}{closed / newton:.0f} times by Newton-Euler")
 

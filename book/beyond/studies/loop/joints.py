@@ -17,7 +17,7 @@ from ddlib import paper
 from ddlib.analysis import gains, mean_gradient
 from ddlib.dynamics import (
     DD_ARM_II_IN_SPACE,
-    count,
+    count_operations,
     lagrange_euler,
     locked,
     mass_matrix,
@@ -299,9 +299,11 @@ def _costs(width: int = 21, hidden: int = paper.HIDDEN_UNITS) -> list[dict]:
             {
                 "joints": n,
                 "network": hidden * n * width + hidden * n + n * n * width,
-                "Newton-Euler, general": count(newton_euler, arm).multiplications,
-                "Newton-Euler, this arm": count(newton_euler, arm, "arm").multiplications,
-                "Lagrange-Euler, general": count(lagrange_euler, arm).multiplications,
+                "Newton-Euler, general": count_operations(newton_euler, arm).multiplications,
+                "Newton-Euler, this arm": count_operations(
+                    newton_euler, arm, "arm"
+                ).multiplications,
+                "Lagrange-Euler, general": count_operations(lagrange_euler, arm).multiplications,
             }
         )
     return rows

@@ -17,7 +17,7 @@ from beyond.rivals.protocol import Cases, Estimating, Rival
 from beyond.studies.loop import motions
 from beyond.studies.loop.feedforwards import exact, through_window
 from beyond.studies.loop.motions import training
-from ddlib.analysis import CLASSES, calibrated, classify, heard, unit_inputs
+from ddlib.analysis import CLASSES, calibrated, classify, unit_inputs, unit_responses
 from ddlib.control import Feedforward
 from ddlib.dynamics import ELBOWS, end_point_error, reach
 from ddlib.learning import NotConverged, TorqueModel, related, surrogate
@@ -172,7 +172,7 @@ def _described(rivals: list, runs: list, family: str, setup: Setup) -> dict:
         x = Cases.windows(day[family], _WIDTH).x
         names = classify(rival.model.weights.hidden_weights)
         motion = true_states(day[family], setup).reshape(-1, 2, 3)
-        follows = heard(unit_inputs(rival.model, x)["hidden"], motion)
+        follows = unit_responses(unit_inputs(rival.model, x)["hidden"], motion)
         rows.append({
             "classes": [(names == name).mean() for name in CLASSES],
             "alone": np.median(follows.alone, 0),

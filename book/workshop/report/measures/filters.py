@@ -11,7 +11,7 @@ from ddlib.analysis import (
     QUANTITIES,
     classify,
     decompose,
-    followed,
+    filter_responses,
     roughness,
     saturated,
     shares,
@@ -118,7 +118,7 @@ def follow(width: int = 21, name: str = "acceleration", layer: str = "direct") -
     training = committed.training()
     states = true_states(training, STATE_FEEDBACK).reshape(-1, 2, 3)
     f = getattr(committed.networks(width).weights, LAYERS[layer])
-    strongest = followed(f, cases(training, width)[0], states).strongest
+    strongest = filter_responses(f, cases(training, width)[0], states).strongest
     each = (strongest == QUANTITIES.index(name)).mean((1, 2))
     counts = ", ".join(f"{n} {(strongest == k).sum()}" for k, n in enumerate(QUANTITIES))
     return judged(mean, each, text=f"best correlated with {counts} of {strongest.size}")

@@ -16,8 +16,8 @@ from ddlib.learning import (
     Weights,
     cases,
     jacobian,
-    moved,
     rows,
+    with_change,
     with_ones,
 )
 from ddlib.metrics import rmss
@@ -255,7 +255,7 @@ def outside_the_span(taken: int = 12, epochs: int = 100) -> Measured:
     for _ in range(epochs):
         error = (now.activity(x)[1] - y).ravel()
         step = 0.9 * step - 0.1 * error @ jacobian(now, x).reshape(error.size, -1)
-        now = moved(now, step)
+        now = with_change(now, step)
     change, windows = rows(now) - rows(start), with_ones(x)
     left = change - np.linalg.lstsq(windows.T, change.T, rcond=None)[0].T @ windows
     share = float(np.linalg.norm(left) / np.linalg.norm(change))

@@ -11,7 +11,7 @@ from ddlib.analysis import (
     LAYERS,
     QUANTITIES,
     classify,
-    followed,
+    filter_responses,
     gains,
     mean_gradient,
 )
@@ -39,7 +39,7 @@ def _summary(model: TorqueModel, windows, states) -> dict:
         f = getattr(model.weights, attribute)
         if f.ndim != 4:
             raise ValueError(f"model must be an ensemble, got weights of shape {f.shape}")
-        names, follows = classify(f), followed(f, windows, states)
+        names, follows = classify(f), filter_responses(f, windows, states)
         layers[layer] = {
             "classes": {name: (names == name).mean((1, 2)) for name in CLASSES},
             "follow": {q: (follows.strongest == k).mean((1, 2)) for k, q in enumerate(QUANTITIES)},

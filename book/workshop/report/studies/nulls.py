@@ -12,13 +12,13 @@ from ddlib.analysis import (
     LAYERS,
     calibrated,
     classify,
-    heard,
     mean_gradient,
     refitted,
     roughness,
     saturated,
     transition_width,
     unit_inputs,
+    unit_responses,
 )
 from ddlib.learning import (
     MATCHED,
@@ -171,7 +171,7 @@ def names_counted(f) -> dict:
 
 def _responded(inputs, states) -> dict:
     """Medians over the units of a network of what they follow, and how many follow what best."""
-    responses = heard(inputs, states)
+    responses = unit_responses(inputs, states)
     best = responses.strongest
     return {
         "alone": np.median(responses.alone, 1),
