@@ -1,9 +1,10 @@
-"""Interactive figures: exact with a kernel, interpolated in the built page without one.
+"""Interactive figures: at any setting with a kernel, at those of a table in the built page.
 
-- ``picker``, ``switches``, ``explorer``, ``fold``, ``player``: a widget each, named after what the
-  reader handles; ``hinton``: the diagram that two of them share
+- ``picker``, ``switches``, ``explorer``, ``player``: a widget each, named after what the reader
+  handles; ``hinton``: the diagram that two of them share
 - ``engine``: widgets that compute in the page, and the live engine that they share
-- ``base``: `CurveWidget`, a function of a few parameters that returns curves
+- ``base``: `CurveWidget`, a function of a few parameters that returns curves; ``table``: its curves
+  at every setting, for the page; ``still``: its start as a picture
 - ``parts``: parameters, panels, pads
 - ``static``: the page's half: scripts that all widgets share (``curves.js``, ...), and one more for
   each that draws something of its own (``picker.js``)

@@ -4,17 +4,11 @@ from .base import (
     CurveWidget as CurveWidget,
     module as module,
 )
-from .engine._live import (
-    LiveWidget as LiveWidget,
-)
 from .engine.trainer import (
     NetworkTrainer as NetworkTrainer,
 )
 from .explorer import (
     FilterExplorer as FilterExplorer,
-)
-from .fold import (
-    FilterFold as FilterFold,
 )
 from .parts.panels import (
     Mark as Mark,
@@ -25,6 +19,7 @@ from .parts.panels import (
 from .parts.parameters import (
     Choice as Choice,
     Parameter as Parameter,
+    Presets as Presets,
 )
 from .picker import (
     TrajectoryPicker as TrajectoryPicker,
@@ -34,4 +29,7 @@ from .player import (
 )
 from .switches import (
     RealArmSwitches as RealArmSwitches,
+)
+from .table import (
+    Live as Live,
 )

@@ -2,29 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import anywidget
 import numpy as np
 import traitlets as t
 
-from ddlib._check import number, one_of
-from ddlib.widgets._baking.baked import Baked, evaluate
-from ddlib.widgets._baking.still import Still, still_picture
-from ddlib.widgets.parts._common import checked_presets, default_code, filled, key_of
+from ddlib._check import one_of
+from ddlib.widgets.parts._common import default_code, filled, key_of
 from ddlib.widgets.parts.panels import Pad, Panel, Scalar
-from ddlib.widgets.parts.parameters import Choice, Parameter
+from ddlib.widgets.parts.parameters import Choice, Parameter, Presets
+from ddlib.widgets.still import Still, still_picture
+from ddlib.widgets.table import Live, evaluate, ranged, tabled, tobytes
 
 _STATIC = Path(__file__).with_name("static")
 
 # Files of the folder `static`, in their order: what every widget has, what a `CurveWidget` has, and
 # its style sheet. A class of its own kind adds its own after them.
 _FRAME = ("elements.js", "frame.js")
-SCRIPT = ("baked.js", *_FRAME, "reading.js", "charts.js", "dragging.js", "kernel.js")
-SCRIPT += ("controls.js", "curves.js")
+SCRIPT = ("numbers.js", "parameters.js", "table.js", *_FRAME, "reading.js", "charts.js")
+SCRIPT += ("dragging.js", "kernel.js", "controls.js", "curves.js")
 STYLE = ("curves.css",)
-_CHECKS = 200  # random settings at which the interpolation is compared with the function
 
 
 def module(*names: str | Path) -> str:
@@ -46,7 +45,7 @@ class _Checked(t.TraitType):
             raise t.TraitError(str(error)) from None
 
 
-class _PageWidget(anywidget.AnyWidget):
+class PageWidget(anywidget.AnyWidget):
     """What every widget has: a description for the page, and a picture for pages without script."""
 
     spec = t.Dict(help="everything that stays as it is", read_only=True).tag(sync=True)
@@ -59,12 +58,12 @@ class _PageWidget(anywidget.AnyWidget):
             self.set_trait(name, value)
 
 
-class CurveWidget(_PageWidget):
+class CurveWidget(PageWidget):
     """Curves of a function of a few parameters, with a control for each.
 
-    Every parameter is a trait of its own name, to set, observe and link. With a kernel the
-    curves are the function's own; in a built page they are interpolated from values on a
-    grid, which are computed here.
+    Every parameter is a trait of its own name, to set, observe and link. With a kernel the curves
+    are the function's own. A built page has a table of them at every setting of the parameters'
+    grids, over which the sliders step; or its script computes them, see `Live`.
 
     Parameters
     ----------
@@ -89,28 +88,22 @@ class CurveWidget(_PageWidget):
         Python code with the same result as the widget's state, for readers to copy; names of
         parameters in braces stand for their values. Default: it makes the widget, if that
         needs no arguments.
-    presets : mapping, optional
-        Label -> value by name of a parameter: buttons that set several parameters at once.
-    presets_title : str
-        What stands before these buttons.
-    depends : mapping, optional
-        Key of the function's result -> names of the only parameters that it depends on;
-        default: all. Saves space: such curves are baked over these parameters alone.
-    tolerance : float
-        Largest acceptable deviation of the interpolation (cubic splines), relative to the range
-        of each curve.
+    presets : Presets, optional
+        Buttons that set several parameters at once.
+    live : Live, optional
+        Which curves the page's script computes. The kernel is then not asked for curves; it sees
+        the parameters, and Python code may set them. The function's curves may end in NaN.
 
     Raises
     ------
     ValueError
-        If arguments do not fit together, if the grid needs more than 400 kB, or if it is too
-        coarse for the tolerance.
+        If arguments do not fit together, or if the table needs more than 400 kB.
     """
 
     _esm = module(*SCRIPT)
     _css = module(*STYLE)
 
-    baked = t.Bytes(help="the table of `Baked`", read_only=True).tag(sync=True)
+    baked = t.Bytes(help="the curves at every setting", read_only=True).tag(sync=True)
     request = t.Int(0, help="counts the page's requests for exact curves").tag(sync=True)
     exact = t.Bytes(b"", help="the function's curves as float32", read_only=True).tag(sync=True)
     answer = t.Dict(help="request and values that `exact` belongs to", read_only=True)
@@ -128,51 +121,44 @@ class CurveWidget(_PageWidget):
         pad: Pad | None = None,
         note: str = "",
         code: str = "",
-        presets: Mapping[str, Mapping] | None = None,
-        presets_title: str = "Go to",
-        depends: Mapping[str, Sequence[str]] | None = None,
-        tolerance: float = 0.01,
+        presets: Presets | None = None,
+        live: Live | None = None,
     ):
         if not callable(function):
             raise TypeError(f"function must be callable, got {function!r}")
         self._function, self._parameters = function, {p.name: p for p in parameters}
-        self._panels, self._pad = tuple(panels), pad
-        number("tolerance", tolerance, 0.0, open_low=True)
+        self._panels, self._live = tuple(panels), live
         if len(self._parameters) != len(parameters) or not parameters:
             raise ValueError(f"parameters must have different names, got {len(parameters)}")
         for name in self._parameters:
             if hasattr(type(self), name):
                 raise ValueError(f"name must not be an attribute of widgets, got {name!r}")
-        self._baked = self._bake(function, parameters, tolerance, depends)
-        self._check_names(scalars)
-        error = self._baked.error(_CHECKS)
-        if error > tolerance:
-            raise ValueError(
-                f"grid must interpolate to {tolerance:g} of each curve's range, got {error:.2g}: "
-                "take more grid points or a larger tolerance"
-            )
+        if live and live.curves is None:
+            self._table = ranged(function, parameters, live)
+        else:
+            self._table = tabled(function, parameters, live.curves if live else ())
+        self._check_names(scalars, pad)
         self._code = code or default_code(type(self), self._parameters)
-        self._presets = checked_presets(presets, self._parameters)
-        start = self._first({p.name: p.value for p in parameters})
+        start = evaluate(function, {p.name: p.value for p in parameters}, bool(live))
         self.add_traits(**{p.name: _Checked(p).tag(sync=True) for p in parameters})
-        told = {"title": title, "note": note, "presets_title": presets_title}
-        self._keep(
-            spec=self._spec(told, scalars, error),
-            baked=self._baked.tobytes(),
-            still=still_picture(start, panels, self._parameters, pad, alt),
-            still_alt=alt,
-        )
+        spec = {
+            "key": key_of(type(self)),
+            "title": title or "; ".join(p.y_label for p in self._panels),
+            "note": note,
+            "code": self._code,
+            "presets": presets and presets.description(self._parameters),
+            "parameters": [p.description() for p in parameters],
+            "curves": [curve.description() for curve in self._table],
+            "panels": [p.description() for p in self._panels],
+            "scalars": [vars(s) for s in scalars],
+            "pad": pad and pad.description(),
+            "live": bool(live),
+        }
+        still = still_picture(start, self._panels, self._parameters, pad, alt)
+        self._keep(spec=spec, baked=tobytes(self._table), still=still, still_alt=alt)
         super().__init__()
         self._compute()
         self.observe(self._on_change, [*self._parameters, "request"])
-
-    def _first(self, values) -> dict:
-        """The curves of the still picture."""
-        return evaluate(self._function, values)
-
-    def _bake(self, *given):
-        """What the page takes its curves from."""
-        return Baked(*given)
 
     @property
     def values(self) -> dict:
@@ -182,7 +168,7 @@ class CurveWidget(_PageWidget):
     @property
     def curves(self) -> dict[str, np.ndarray]:
         """The function's exact result at the parameters as they stand."""
-        return evaluate(self._function, self.values)
+        return self.curves_at()
 
     @property
     def code(self) -> str:
@@ -191,24 +177,35 @@ class CurveWidget(_PageWidget):
 
     @property
     def baked_bytes(self) -> int:
-        """Size of the baked values."""
+        """Size of the table."""
         return len(self.baked)
 
-    def interpolate(self, **values) -> dict[str, np.ndarray]:
-        """What a built page shows; parameters that are not given stand as they are."""
+    def curves_at(self, **values) -> dict[str, np.ndarray]:
+        """The function's exact result; parameters that are not given stand as they are."""
+        return evaluate(self._function, self._checked(values), bool(self._live))
+
+    def at_grid(self, **values) -> dict[str, np.ndarray]:
+        """What the table of a built page has at the nearest setting of the parameters' grids.
+
+        Parameters that are not given stand as they are; curves that the page computes are left out.
+        """
+        checked = self._checked(values)
+        places = [p.nearest(checked[name]) for name, p in self._parameters.items()]
+        return {c.name: c.at(places) for c in self._table if c.steps is not None}
+
+    def _checked(self, values) -> dict:
+        """All parameters: those given, and the others as they stand."""
         unknown = ", ".join(name for name in values if name not in self._parameters)
         if unknown:
             raise TypeError(f"values must be among {', '.join(self._parameters)}, got {unknown}")
-        return self._baked.interpolate(**{**self.values, **values})
+        given = {name: self._parameters[name].check(x) for name, x in values.items()}
+        return {**self.values, **given}
 
-    def interpolation_error(self, n=200, seed=0) -> float:
-        """Largest ``|interpolated - exact| / range`` of any curve at `n` random settings."""
-        return self._baked.error(n, seed)
-
-    def _check_names(self, scalars):
-        lengths, used = self._baked.lengths, {name for p in self._panels for name in p.curves}
+    def _check_names(self, scalars, pad):
+        lengths = {curve.name: curve.length for curve in self._table}
+        used = {name for p in self._panels for name in p.curves}
         single = [s.name for s in scalars] + [name for p in self._panels for name in p.numbers]
-        for name in [*used, *single]:
+        for name in [*used, *single, *(self._live.curves or () if self._live else ())]:
             one_of("curve", name, tuple(lengths))
         for panel in self._panels:
             for name in panel.curves:
@@ -220,34 +217,10 @@ class CurveWidget(_PageWidget):
         for name in single:
             if lengths[name] != 1:
                 raise ValueError(f"{name} must be one number, got {lengths[name]}")
-        if self._pad:
-            ranged = [n for n, p in self._parameters.items() if isinstance(p, Parameter)]
-            for name in (self._pad.x, self._pad.y):
-                one_of("parameter of the pad", name, tuple(ranged))
-
-    def _spec(self, told, scalars, error) -> dict:
-        baked = self._baked
-        curves = [
-            {"name": name, "length": n, "low": float(low), "high": float(high)}
-            for (name, n), low, high in zip(baked.lengths.items(), baked.low, baked.high)
-        ]
-        presets = {"title": told["presets_title"], "options": self._presets}
-        return {
-            "key": key_of(type(self)),
-            "title": told["title"] or "; ".join(p.y_label for p in self._panels),
-            "note": told["note"],
-            "code": self._code,
-            "presets": presets if self._presets else None,
-            "parameters": [p.description() for p in baked.parameters],
-            "curves": curves,
-            "panels": [p.description() for p in self._panels],
-            "scalars": [vars(s) for s in scalars],
-            "pad": self._pad and self._pad.description(),
-            "groups": baked.groups,
-            "checksum": baked.checksum(),
-            "error": error,
-            "checks": _CHECKS,
-        }
+        if pad:
+            in_range = [n for n, p in self._parameters.items() if isinstance(p, Parameter)]
+            for name in (pad.x, pad.y):
+                one_of("parameter of the pad", name, tuple(in_range))
 
     def _on_change(self, change):
         state = {"request": self.request, "values": list(self.values.values())}
@@ -256,6 +229,8 @@ class CurveWidget(_PageWidget):
 
     def _compute(self):
         """Put the exact curves, or the reason why there are none, before the page."""
+        if self._live:  # the page computes
+            return
         answer = {"request": self.request, "values": list(self.values.values())}
         exact = b""
         try:

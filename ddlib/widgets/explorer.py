@@ -24,7 +24,6 @@ from ddlib.learning import TorqueModel, Weights
 from ddlib.widgets.base import SCRIPT, STYLE, Panel, module
 from ddlib.widgets.hinton import (
     CENTRE,
-    EXACT,
     JOINTS,
     _check_models,
     _diagram,
@@ -36,7 +35,7 @@ from ddlib.widgets.hinton import (
     width_choice,
     zero_padded,
 )
-from ddlib.widgets.parts.parameters import Choice
+from ddlib.widgets.parts.parameters import Choice, Presets
 
 _FREQUENCIES = np.geomspace(0.005, 0.2, 31)  # where the gain is shown, over the sampling rate
 _FLOOR = 1e-3  # lowest gain shown, as a part of the largest: a zero of the response has none
@@ -46,8 +45,7 @@ class FilterExplorer(_HintonWidget):
     """Choose a weight function on a Hinton diagram; see its parts, shares and gain.
 
     Filters of different windows share one axis: a filter of 11 samples is one of 41 samples
-    with zeros on both sides. The window itself is shaded. Everything is computed for the
-    choices there are; nothing is interpolated.
+    with zeros on both sides. The window itself is shaded.
 
     Parameters
     ----------
@@ -119,19 +117,14 @@ class FilterExplorer(_HintonWidget):
                 "constant, even and odd parts. The share of position, velocity, acceleration and "
                 "jerk in their energy. Their gain over frequency."
             ),
-            depends={
-                "weights of all units": (*(size.name for size in sizes), "seed"),
-                **{end: [size.name for size in sizes] for end in ("first", "last")},
-            },
             note=(
                 "Both axes of the gain are logarithmic, so a derivative is a straight line. The "
                 "line shows the filter's main derivative, as the filter takes it of slow signals. "
                 "From 1 to 10 Hz it rises by a factor of 10 for velocity, and by a factor of 100 "
                 "for acceleration."
             ),
-            presets=_named(self._weights, members, bool(sizes)),
-            presets_title="Named filters",
-            **{"tolerance": EXACT, **options},
+            presets=Presets(_named(self._weights, members, bool(sizes)), "Named filters"),
+            **options,
         )
 
     def _filter(self, seed, unit, joint, width):

@@ -17,11 +17,11 @@ from ddlib.learning import TorqueModel, sliding_windows
 from ddlib.metrics import rmss
 from ddlib.setups import STATE_FEEDBACK, Setup
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place
-from ddlib.widgets.base import SCRIPT, STYLE, module
-from ddlib.widgets.engine._live import LiveWidget
+from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
 from ddlib.widgets.engine._plain import ENGINE, SLIDING, lean, loop, networks, plant
 from ddlib.widgets.parts.panels import Mark, Pad, Panel, Scalar
-from ddlib.widgets.parts.parameters import Parameter
+from ddlib.widgets.parts.parameters import Parameter, Presets
+from ddlib.widgets.table import Live
 
 _RIGID = "Lagrange-Euler"
 _RECORDED = "recorded"
@@ -71,7 +71,7 @@ class _Recorded(t.Any):
         return super().get(obj, cls)
 
 
-class TrajectoryPicker(LiveWidget):
+class TrajectoryPicker(CurveWidget):
     """Pick a trajectory of the paper's family; see arm, joint angles and torques; record it.
 
     The pad is the square of extents from 0 to 45 degrees with the trajectories of the recording.
@@ -94,7 +94,7 @@ class TrajectoryPicker(LiveWidget):
     trajectories_deg : array_like, shape (runs, 2)
         Extents of the recording within the square, degrees; the last one is the test.
     **options
-        Passed on to `LiveWidget`.
+        Passed on to `CurveWidget`.
 
     Attributes
     ----------
@@ -173,12 +173,14 @@ class TrajectoryPicker(LiveWidget):
             scalars=[*peaks, *(Scalar(f"RMSS, {n}", f"RMSS, {n}", digits=2) for n in models)],
             pad=_pad(family, self._hull),
             note=_NOTE if models else "",
-            presets={
-                str(k): {f"{joint}_deg": x for joint, x in zip(JOINTS, extents)}
-                for k, extents in enumerate(family.tolist(), 1)
-            },
-            presets_title="Trajectory",
-            ranges={name: (x.min(), x.max()) for name, x in square.items()},
+            presets=Presets(
+                {
+                    str(k): {f"{joint}_deg": x for joint, x in zip(JOINTS, extents)}
+                    for k, extents in enumerate(family.tolist(), 1)
+                },
+                "Trajectory",
+            ),
+            live=Live(ranges={name: (x.min(), x.max()) for name, x in square.items()}),
             **{"code": _MOTION, **options},
         )
         errors = {name: self.numbers[f"RMSS, {name}"] for name in models}

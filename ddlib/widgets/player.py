@@ -12,7 +12,6 @@ from ddlib.simulation import Recording
 from ddlib.widgets.base import SCRIPT, STYLE, Panel, Scalar, module
 from ddlib.widgets.hinton import (
     CENTRE,
-    EXACT,
     JOINTS,
     _diagram,
     _HintonWidget,
@@ -30,7 +29,7 @@ class TrainingPlayer(_HintonWidget):
     """Play a training run: from random weights to smooth filters.
 
     The slider steps over the recorded epochs, which are equally spaced on a log scale.
-    Between them the error of a network trained with momentum swings; nothing is interpolated.
+    Between them the error of a network trained with momentum swings.
     The film begins where the weights have gone a twentieth of their way from start to end.
 
     Parameters
@@ -81,7 +80,7 @@ class TrainingPlayer(_HintonWidget):
         self.set_trait("begin", begin)
         places = np.log10(np.maximum(epochs, 1))
         started, last = epochs > 0, places[-1]
-        # inside the axis by more than the rounding of baked values
+        # inside the axis by more than the rounding of the table
         self._places = np.clip(places, 1e-3 * last, (1 - 1e-3) * last)
         super().__init__(
             self._weights[0],
@@ -126,13 +125,7 @@ class TrainingPlayer(_HintonWidget):
                 *(Scalar(f"{n} RMSS", f"RMSS, {name}") for n, name in _ERRORS.items()),
                 Scalar("largest", "Weight of the largest square", digits=2),
             ],
-            depends={
-                **dict.fromkeys(("lowest", "highest"), ("unit",)),
-                **dict.fromkeys(("place", "largest"), ("epoch",)),
-                **dict.fromkeys((f"{n} RMSS" for n in _ERRORS), ("epoch",)),
-                "weights of all units": ("epoch",),
-            },
-            **{"tolerance": EXACT, **options},
+            **options,
         )
 
     def _curves(self, unit, epoch) -> dict:

@@ -24,12 +24,12 @@ from ddlib.paper import TEST_TRAJECTORY
 from ddlib.setups import KD, KP
 from ddlib.simulation import CONTROL_STEP, Recording, follow
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
-from ddlib.widgets.base import SCRIPT, STYLE, module
-from ddlib.widgets.engine._live import LiveWidget
+from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
 from ddlib.widgets.engine._loops import LOOPS
 from ddlib.widgets.engine._plain import ENGINE, gains, lean, plant
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
+from ddlib.widgets.table import Live
 
 _SHARE = np.array([1.0, 0.3])  # strength of an effect at shoulder and elbow, over the shoulder's
 
@@ -56,13 +56,13 @@ _RANGES = {"error": (-10, 5), "torque": (-40, 20), "close-up": (-10, 15)}
 _CODE = """\
 from ddlib.widgets import RealArmSwitches
 
-RealArmSwitches().interpolate(
+RealArmSwitches().curves_at(
     friction={friction}, dead_zone={dead_zone}, saturation={saturation},
     quantisation={quantisation}, delay={delay},
 )"""
 
 
-class RealArmSwitches(LiveWidget):
+class RealArmSwitches(CurveWidget):
     """Switch friction, dead zone, saturation, quantisation and delay on and off.
 
     The arm follows trajectory 6 under the PD law of `STATE_FEEDBACK`, with the difference of two
@@ -75,7 +75,7 @@ class RealArmSwitches(LiveWidget):
     arm : Arm
         The arm that moves.
     **options
-        Passed on to `LiveWidget`.
+        Passed on to `CurveWidget`.
     """
 
     _esm = module(*SCRIPT) + lean(module(*ENGINE, LOOPS, "switches.js"))
@@ -106,6 +106,7 @@ class RealArmSwitches(LiveWidget):
                 for joint in JOINTS
             ],
             code=_CODE,
+            live=Live(),
             note=(
                 "Strengths are those at the shoulder; at the elbow they are 0.3 times as large. "
                 "Friction has a dry and a viscous part, which are equal at 1 rad/s."

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from traitlets import TraitError
+from widget_pages import assert_exact_table
 
 from beyond.chapters.widgets import loop
 from beyond.studies.loop import adaptive_laws as runs
@@ -10,7 +11,7 @@ from beyond.studies.page import learner
 from ddlib.dynamics import CMU_DD_ARM_II, with_load
 from ddlib.effects import Effects
 from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_COULOMB, JOINT_DAMPING_VISCOUS
-from ddlib.widgets._baking.baked import _MAX_BYTES
+from ddlib.widgets.table import _MAX_BYTES
 from workshop.report import results
 
 
@@ -28,7 +29,7 @@ def truths(load):
 
 def test_the_page_shows_the_committed_result_in_every_setting(widget):
     assert widget.baked_bytes < _MAX_BYTES / 10
-    assert widget.interpolation_error(60) < 1e-3
+    assert_exact_table(widget)
     kept, rate = results.read("loop-learner")["loads"], list(loop.SPEEDS).index("ten times")
     for who in learner._LEARNERS:
         widget.load, widget.friction, widget.learner, widget.rate = 5, True, who, "ten times"
@@ -37,7 +38,7 @@ def test_the_page_shows_the_committed_result_in_every_setting(widget):
         estimates = np.array(kept["5"][who]["estimates"][1][rate])[:, list(loop._SHOWN.values())]
         for name, wanted in zip(loop._SHOWN, (estimates / truths(5)).T):
             np.testing.assert_allclose(widget.curves[name], np.clip(wanted, *loop._BOUNDS))
-        baked = widget.interpolate()
+        baked = widget.at_grid()
         for name, values in widget.curves.items():
             np.testing.assert_allclose(baked[name], values, atol=2e-3 * max(1.0, np.ptp(values)))
     with pytest.raises(TraitError, match="load must be one of"):

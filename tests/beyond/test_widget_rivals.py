@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from widget_pages import assert_exact_table
 
 from beyond.chapters.widgets.rivals import _MEASURED, RivalPicker
 from beyond.studies.lineup import REFERENCE
@@ -25,8 +26,8 @@ def test_curves_are_those_of_the_place_and_the_rival_on_the_page_too(picker):
     scale = torque[0].reshape(-1, 2).std(0)
     wanted = np.sqrt((((torque[1:, run] - torque[0, run]) / scale) ** 2).mean((1, 2)))
     np.testing.assert_allclose(picker.curves["errors"], wanted)
-    assert picker.interpolation_error(40) < 1e-3
+    assert_exact_table(picker)
     picker.shoulder, picker.elbow = 9, 1
-    baked = picker.interpolate()
+    baked = picker.at_grid()
     for name, values in picker.curves.items():
         np.testing.assert_allclose(baked[name], values, atol=2e-3)

@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 from axe import violations
 from traitlets import TraitError
-from widget_pages import NEXT_FRAME, PATHS, page_of
+from widget_pages import NEXT_FRAME, PATHS, assert_curves, assert_exact_table, page_of
 
 from beyond.chapters.widgets.stirring import _LINES, StirringPicker
 from beyond.studies.loop.stirring import _PICKER, PLACES
 from ddlib.dynamics import CMU_DD_ARM_II as ARM, reach
-from ddlib.widgets._baking.baked import _MAX_BYTES
+from ddlib.widgets.table import _MAX_BYTES
+
+VALUES = "document.querySelector('.ddlib-curves').view.values"
 
 
 @pytest.fixture(scope="module")
@@ -34,9 +36,7 @@ def test_curves_are_those_of_the_place(picker):
     turned = np.unwrap(np.angle(z - centre))
     np.testing.assert_allclose(np.abs(z - centre), 0.08)
     np.testing.assert_allclose(np.diff(turned), 2 * np.pi / 3 * 0.05, rtol=1e-9)
-    baked = picker.interpolate()
-    for name, values in curves.items():
-        np.testing.assert_allclose(baked[name], values, atol=0.02 * max(1, np.abs(values).max()))
+    assert_exact_table(picker)
 
 
 def test_what_cannot_be_reached_is_zero_and_marked(picker):
@@ -68,6 +68,11 @@ def test_a_page_without_kernel_refuses_in_words(tmp_path, visit, picker):
     page.mouse.click(box["x"] + 0.72 * box["width"], box["y"] + 0.5 * box["height"])
     page.evaluate(NEXT_FRAME)
     assert page.evaluate(PATHS) != before
+    now = dict(zip(picker.values, page.evaluate(VALUES)))
+    assert now["bearing"] != -60
+    exact = picker.curves_at(**now)
+    angles = {name: exact[name] for name in ("shoulder angle", "elbow angle")}
+    assert_curves(page, picker.at_grid(**now) | angles, 1e-9)
     for _ in range(5):  # to the edge, not beyond
         pad.press("ArrowUp")
     page.evaluate(NEXT_FRAME)

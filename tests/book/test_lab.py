@@ -157,8 +157,8 @@ def reacts_alone(page, handle: Handle):
     wait(page, "a redraw without kernel", lambda: handle.picture() != picture, ANSWER)
     note = handle.root.get_by_text(NOTE)
     wait(page, "the note", note.is_visible, ANSWER)
-    interpolated = handle.root.and_(page.locator("[data-values=interpolated]"))
-    wait(page, "baked values", lambda: interpolated.count() == 1, ANSWER)
+    baked = handle.root.and_(page.locator("[data-values=baked]"))
+    wait(page, "baked values", lambda: baked.count() == 1, ANSWER)
 
 
 CELLS = """() => {
@@ -192,7 +192,7 @@ def way_of(handle: Handle):
     """What to ask of a widget with a kernel, and without one."""
     if handle.root.evaluate("(root) => Boolean(root.world)"):
         return is_pulled, is_pulled
-    if handle.root.get_attribute("data-values") in ("exact", "interpolated"):
+    if handle.root.get_attribute("data-values") in ("exact", "baked"):
         return reacts, reacts_alone
     return is_computed, is_computed
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from pictures import check_sound
+from widget_pages import assert_exact_table
 
 from ddlib.analysis import gains
 from ddlib.simulation import LOG_STEP
@@ -75,6 +76,7 @@ def test_widget_shows_the_mass_going(widget):
 
 
 def test_widget_fits_into_the_page(widget):
-    assert widget.baked_bytes < 60_000 and widget.interpolation_error() < 0.01
+    assert widget.baked_bytes < 60_000
+    assert_exact_table(widget)
     with pytest.raises(Exception, match="skip must be one of"):
         widget.set_trait("skip", 0.3)

@@ -37,7 +37,7 @@ def test_acceleration_by_window():
     widget = window_size.acceleration_by_window()
     best = []
     for bits in (10.5, 12.5, 16.0):
-        shown = widget.interpolate(width=21, bits=bits)
+        shown = widget.at_grid(width=21, bits=bits)
         assert shown["error"][0] == pytest.approx(shown["errors"][9], rel=0.02)  # as baked
         best.append(shown["errors"].argmin())
     assert best == sorted(best, reverse=True) and best[0] > best[2]

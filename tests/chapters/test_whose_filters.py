@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from axe import violations
 from traitlets import TraitError
-from widget_pages import NEXT_FRAME, page_of
+from widget_pages import NEXT_FRAME, assert_exact_table, page_of
 
 from ddlib.analysis import CLASSES, gains, mean_gradient
 from ddlib.learning import Weights, cases
@@ -90,7 +90,7 @@ def test_one_unit_is_shown_before_and_after():
     assert np.allclose(shown["before"], before.hidden_weights[1, 1])
     parts = shown["even"] + shown["odd"] + shown["constant"]
     assert np.allclose(parts, after.hidden_weights[1, 1]) and np.isclose(shown["shares"].sum(), 1)
-    assert widget.interpolation_error() < 1e-3
+    assert_exact_table(widget)
 
 
 def test_the_sum_over_all_samples_is_the_inertia():

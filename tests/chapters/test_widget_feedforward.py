@@ -23,7 +23,7 @@ def test_with_the_jump_it_is_a_recording(switches):
     arm = JOINT_DAMPING.arm
     law = Feedforward(arm, proportional(KP))
     recording = record(arm, law, APPENDIX_I[0], effects=_FRICTION)
-    shown = switches.interpolate(model=True, jump=True)
+    shown = switches.curves_at(model=True, jump=True)
     moving = recording.motion
     error = np.rad2deg(recording.tracking_error[moving, 0])
     np.testing.assert_allclose(shown["shoulder error"], error, atol=1e-6)
@@ -35,11 +35,11 @@ def test_with_the_jump_it_is_a_recording(switches):
 def test_model_and_feedback_multiply(switches):
     """On the arm without friction a model's error is the share that is left."""
     for masses in (0, 80, 100, 120, 200):
-        left = switches.interpolate(model=True, masses=masses, friction=False)["share"][0]
+        left = switches.curves_at(model=True, masses=masses, friction=False)["share"][0]
         assert left == pytest.approx(abs(100 - masses), abs=0.5)
-    rubbing = [switches.interpolate(model=True, known=known)["share"][0] for known in (0 > 1, True)]
+    rubbing = [switches.curves_at(model=True, known=known)["share"][0] for known in (0 > 1, True)]
     assert 25 < rubbing[0] < 45 and rubbing[1] < 1
-    assert switches.interpolate(model=True, feedback=False)["share"][0] > 1000
+    assert switches.curves_at(model=True, feedback=False)["share"][0] > 1000
 
 
 @pytest.mark.browser

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from widget_pages import settings
+from widget_pages import assert_exact_table, settings
 
 from ddlib.analysis import basis
 from ddlib.learning import Directions
@@ -60,11 +60,11 @@ def widget(study, along):
 
 
 def test_curves_are_those_of_the_study(widget, study, along):
-    assert widget.interpolation_error(100, seed=3) < 1e-4
+    assert_exact_table(widget)
     for values in settings(widget, 40, seed=1):
         at = 2 * values["case"] + WIDTHS.index(values["width"])
         cell, k = study["cells"][at], values["direction"] - 1
-        row, shown = EPOCHS.index(values["epoch"]), widget.interpolate(**values)
+        row, shown = EPOCHS.index(values["epoch"]), widget.at_grid(**values)
         zeros = (max(WIDTHS) - values["width"]) // 2
         for joint, f in zip(("shoulder", "elbow"), along[at].filters[k]):
             np.testing.assert_allclose(shown[f"{joint} shape"], np.pad(f, zeros), atol=2e-4)
@@ -81,5 +81,5 @@ def test_curves_are_those_of_the_study(widget, study, along):
 def test_shares_name_the_derivative(widget):
     for direction, share in enumerate((1, 2, 3, 4, 0), 1):  # in SHARES the bias comes first
         expected = np.eye(6)[share]
-        shown = widget.interpolate(direction=direction, width=11)["shares"]
+        shown = widget.at_grid(direction=direction, width=11)["shares"]
         np.testing.assert_allclose(shown, expected, atol=1e-3)

@@ -41,7 +41,7 @@ def known(motion=1, load=0, doubled=False, friction=False):
 
 @pytest.mark.parametrize("levels", SETTINGS)
 def test_terms_add_up_to_the_torque(terms, levels):
-    found = terms.interpolate(**levels)
+    found = terms.curves_at(**levels)
     for name, torque in known(**levels).items():
         np.testing.assert_allclose(found[name], torque, atol=1e-9)
     for joint in ("shoulder", "elbow"):
@@ -50,7 +50,7 @@ def test_terms_add_up_to_the_torque(terms, levels):
 
 
 def test_double_speed_is_four_times_every_term_but_friction(terms):
-    slow, fast = (terms.interpolate(doubled=x, friction=True) for x in (False, True))
+    slow, fast = (terms.curves_at(doubled=x, friction=True) for x in (False, True))
     for joint in ("shoulder", "elbow"):
         for term in TERMS:
             np.testing.assert_allclose(
@@ -74,7 +74,7 @@ def test_code_gives_the_root_mean_squares(terms):
     *lines, last = terms.code.splitlines()
     exec("\n".join(lines), place)
     found = eval(last, place)
-    curves = terms.interpolate()
+    curves = terms.curves_at()
     for name in ("inertial", "coupling", "centrifugal"):
         rms = np.sqrt((curves[f"elbow {name}"] ** 2).mean())
         assert found[name][1] == pytest.approx(rms, rel=1e-6)
@@ -85,7 +85,7 @@ def test_code_gives_the_root_mean_squares(terms):
 def test_the_page_computes_the_same(tmp_path, visit, terms, levels):
     query = ",".join(f"{k}:{str(v).lower()}" for k, v in levels.items())
     opened = visit(f"{page_of(tmp_path / 'page.html', terms)}?torque-terms={query}")
-    assert_curves(opened.page, terms.interpolate(**levels), 1e-6)
+    assert_curves(opened.page, terms.curves_at(**levels), 1e-6)
     assert not opened.problems
 
 
@@ -109,7 +109,7 @@ def test_guess_then_double_the_speed(tmp_path, visit, terms):
     page.get_by_role("button", name="The ratio stays").click()
     assert said.inner_text().startswith("Yes, the ratio stays")
     assert page.get_by_role("switch", name="Double the speed").is_checked()
-    assert_curves(page, terms.interpolate(doubled=True))
+    assert_curves(page, terms.curves_at(doubled=True))
     after = page.locator(".terms tbody tr").nth(2).locator("td").all_inner_texts()
     values = [[float(x.replace("−", "-")) for x in row] for row in (before, after)]
     np.testing.assert_allclose(values[1], 4 * np.array(values[0]), atol=0.03)

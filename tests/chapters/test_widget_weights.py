@@ -49,7 +49,7 @@ def row_of(weights: Weights, unit: str, joint: str) -> np.ndarray:
 def test_curves_are_the_weights_less_the_start(widget, pair):
     for values in settings(widget, 40, seed=1):
         start, trained = (row_of(w, values["unit"], values["joint"]) for w in pair)
-        shown, wanted = widget.interpolate(**values), trained - start * values["subtract"]
+        shown, wanted = widget.at_grid(**values), trained - start * values["subtract"]
         step = 1e-3 * np.abs(trained).max() + 1e-4
         np.testing.assert_allclose(shown["weights"], wanted, atol=step)
         assert shown["largest"][0] == pytest.approx(np.abs(wanted).max(), abs=step)
@@ -67,7 +67,7 @@ def test_curves_are_the_weights_less_the_start(widget, pair):
 def test_what_was_added_is_smooth(widget):
     for unit in ("hidden 0", "elbow torque"):
         trained, added = (
-            widget.interpolate(subtract=each, unit=unit)["roughness"][0] for each in (False, True)
+            widget.at_grid(subtract=each, unit=unit)["roughness"][0] for each in (False, True)
         )
         assert added < 0.1 and added < trained
 

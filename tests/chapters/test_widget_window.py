@@ -32,7 +32,7 @@ def widget(models, test_run):
 def test_truths_at_every_sample(widget, models, test_run):
     for values in settings(widget, 40, seed=1):
         width, sample = values["width"], values["sample"]
-        model, shown = models[width], widget.interpolate(**values)
+        model, shown = models[width], widget.curves_at(**values)
         windows = sliding_windows(test_run.q, width, test_run.motion)
         torque = model.torque(windows)
         at = test_run.motion.start + sample
@@ -61,7 +61,7 @@ def test_the_page_computes_what_ddlib_does(tmp_path, visit, widget):
     page, slider = opened.page, opened.page.get_by_role("slider")
 
     def shows(width, sample):
-        assert_curves(page, widget.interpolate(width=width, sample=sample))
+        assert_curves(page, widget.curves_at(width=width, sample=sample))
         assert page.locator("output[for$=sample]").inner_text() == f"{0.01 * sample:.2f} s"
 
     shows(21, 75)
@@ -93,7 +93,7 @@ def test_the_torque_is_covered_from_the_window_on(hidden, test_run):
     motion = test_run.motion
     for values in settings(hidden, 30, seed=2):
         joint, k, shown = values["joint"], values["sample"], values["shown"]
-        j, curves = ("shoulder", "elbow").index(joint), hidden.interpolate(**values)
+        j, curves = ("shoulder", "elbow").index(joint), hidden.curves_at(**values)
         seen = np.isfinite(curves["torque"])
         last = 300 if shown else max(1, k - 9)
         assert seen[:last].all() and not seen[last:].any()
@@ -121,9 +121,9 @@ def test_what_it_refuses(test_run, given, says):
 def test_the_page_hides_and_uncovers_it(tmp_path, visit, hidden):
     opened = visit(page_of(tmp_path / "page.html", hidden) + "?hidden-torque=sample:75")
     page, slider = opened.page, opened.page.get_by_role("slider")
-    assert_curves(page, hidden.interpolate(joint="shoulder", sample=75, shown=False))
+    assert_curves(page, hidden.curves_at(joint="shoulder", sample=75, shown=False))
     slider.press("ArrowRight")
     page.get_by_label("Uncover the torque").click()
     page.get_by_label("Joint").select_option(label="elbow")
-    assert_curves(page, hidden.interpolate(joint="elbow", sample=76, shown=True))
+    assert_curves(page, hidden.curves_at(joint="elbow", sample=76, shown=True))
     assert not opened.problems

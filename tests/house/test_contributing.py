@@ -6,6 +6,7 @@ import shutil
 import numpy as np
 import yaml
 from book_pages import ROOT
+from widget_pages import assert_exact_table
 
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.setups import SETUPS
@@ -78,7 +79,7 @@ def test_the_widget_shows_its_function():
     widget.viscous, widget.coulomb = 0.25, 0.75
     (torque,) = widget.curves.values()
     np.testing.assert_allclose(torque, 0.25 * speed + 0.75 * np.sign(speed))
-    assert widget.interpolation_error(50) < 0.01
+    assert_exact_table(widget)
     assert widget.still and widget.still_alt
 
 

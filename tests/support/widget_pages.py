@@ -152,6 +152,18 @@ def settings(widget, n, seed=1):
         yield {p.name: p.place(f) for p, f in zip(widget._parameters.values(), fractions)}
 
 
+def assert_exact_table(widget, n=60):
+    """At random points of the grids the table has the function's values, rounded to 16 bits."""
+    width = {c["name"]: c["high"] - c["low"] for c in widget.spec["curves"]}
+    rng = np.random.default_rng(4)
+    for _ in range(n):
+        values = {name: p.points()[rng.integers(p.grid)] for name, p in widget._parameters.items()}
+        exact = widget.curves_at(**values)
+        for name, curve in widget.at_grid(**values).items():
+            allowed = 0.50001 / 65_535 * width[name] + 1e-12
+            np.testing.assert_allclose(curve, exact[name], rtol=0, atol=allowed, err_msg=name)
+
+
 def saved(*widgets) -> dict:
     """The state as a notebook keeps it: whole, with script and style."""
     return embed_data(list(widgets), drop_defaults=False)["manager_state"]
@@ -192,7 +204,7 @@ CURVES = """() => {
 
 
 def assert_curves(page, known, small=1e-6):
-    """What the page has computed or interpolated is known, to a part of each curve's size."""
+    """What the page has computed or read is known, to a part of each curve's size."""
     page.evaluate(NEXT_FRAME)
     curves = page.evaluate(CURVES)
     for name, values in known.items():

@@ -15,9 +15,9 @@ def oscillation(gain, decay, phase):
     return {"position": y, "square": y**2 + gain, "constant": np.full(3, 2.5), "final": y[-1]}
 
 
-def parameters(grid=7):
+def parameters(grid=21):
     return [
-        Parameter("gain", "Gain", 1, 100, 10, "N m/rad", 9, "log"),
+        Parameter("gain", "Gain", 1, 100, 10, "N m/rad", 3, "log"),
         Parameter("decay", "Decay", 0, 2, 0.5, "1/s", grid),
         Parameter("phase", "Phase", -1, 1, 0, "rad", grid),
     ]
@@ -69,17 +69,8 @@ def kinds():
 def make_kinds(**changes):
     scalars = [Scalar("from", "Begin", "s", digits=1)]
     given = {"alt": "Waves", "note": "A note.", "scalars": scalars, **changes}
-    # rounding makes steps in the gain, which no smooth curve follows
-    return CurveWidget(wave, options(), kinds(), tolerance=0.05, **given)
+    return CurveWidget(wave, options(), kinds(), **given)
 
 
 def parts(a, b, k):
     return {"a": np.sin(a * T), "all": T * (a + b) * (1 + k), "k": np.full(2, k), "c": T**2}
-
-
-DEPENDS = {"a": ["a"], "k": ("k",), "c": []}
-
-
-def axes():
-    a, b = (Parameter(name, name, 0, 2, 1, grid=6) for name in "ab")
-    return [a, b, Choice("k", "k", [0, 1, 5], 1)]

@@ -13,6 +13,7 @@ from ddlib.setups import STATE_FEEDBACK, split
 from workshop.chapters.widgets import (
     builder,
     feedforward,
+    fold,
     sentence,
     terms,
     throw,
@@ -23,7 +24,7 @@ from workshop.chapters.widgets import (
 )
 from workshop.chapters.widgets.weight import OneWeight
 
-LESSONS = builder, feedforward, sentence, terms, throw, tuner, weights, whose, window
+LESSONS = builder, feedforward, fold, sentence, terms, throw, tuner, weights, whose, window
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 HIDE = "<style>main > div { display: none }</style>"
@@ -64,7 +65,7 @@ def every():
     made = {
         "FilterBuilder": lambda: builder.FilterBuilder(np.arange(-10, 11.0) ** 2),
         "FilterExplorer": lambda: room.FilterExplorer({7: ensemble, 11: wide}, (0, 1), step=0.01),
-        "FilterFold": lambda: room.FilterFold({"up": rows[0, 0], "down": -rows[0, 0]}, 0.01),
+        "FilterFold": lambda: fold.FilterFold({"up": rows[0, 0], "down": -rows[0, 0]}, 0.01),
         "FeedforwardSwitches": lambda: feedforward.FeedforwardSwitches(),
         "HiddenTorque": lambda: window.HiddenTorque(split(recording)[1]),
         "LoopSentence": lambda: sentence.LoopSentence(),
@@ -82,7 +83,7 @@ def every():
         "WeightReader": lambda: weights.WeightReader(start, trained, 0.01),
         "WhoseFilters": lambda: whose.WhoseFilters(rounds),
         "CurveWidget": make,
-        "LiveWidget": OneWeight,
+        "OneWeight": OneWeight,
         "kinds": make_kinds,
     }
     public = {n for n in dir(room) if hasattr(getattr(room, n), "_esm")}
@@ -90,7 +91,7 @@ def every():
         for name, one in vars(module).items():
             if hasattr(one, "_esm") and one.__module__ == module.__name__ and name[0] != "_":
                 public.add(name)
-    assert public - {"CurveWidget", "LiveWidget"} <= set(made), "a widget without a sample"
+    assert public - {"CurveWidget"} <= set(made), "a widget without a sample"
     return [maker() for maker in made.values()]
 
 

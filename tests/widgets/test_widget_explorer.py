@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 from scipy.signal import freqz
-from widget_pages import NEXT_FRAME, page_of, settings
+from widget_pages import NEXT_FRAME, assert_exact_table, page_of, settings
 
 from ddlib.analysis import CLASSES, classify, savitzky_golay
 from ddlib.learning import Weights
@@ -47,10 +47,10 @@ def gain_of(f) -> np.ndarray:
 
 
 def test_truths_of_every_filter(explorer, models):
-    assert explorer.interpolation_error(100, seed=4) < 1e-4
+    assert_exact_table(explorer)
     for values in settings(explorer, 60, seed=2):
         f = weights_of(models, **values)
-        shown = explorer.interpolate(**values)
+        shown = explorer.at_grid(**values)
         step = 2e-5 * np.abs(f).max() + 2e-3  # of the table
         inside = slice(REACH - len(f) // 2, REACH + len(f) // 2 + 1)
         padded = np.zeros(2 * REACH + 1)
@@ -74,7 +74,7 @@ def test_truths_of_every_filter(explorer, models):
 def test_gains_are_scipys(explorer, models):
     for values in settings(explorer, 40, seed=3):
         f = weights_of(models, **values)
-        shown = explorer.interpolate(**values)
+        shown = explorer.at_grid(**values)
         lowest = _FLOOR * max(gain_of(f).max(), gain_of(f - f.mean()).max())
         for name, g in (("gain", f), ("gain, varying", f - f.mean())):
             expected = np.log10(np.maximum(gain_of(g), lowest))
@@ -115,7 +115,7 @@ def assert_shown(page, explorer, models, **values):
     f = weights_of(models, **values)
     assert page.evaluate(CHOSEN) == f"{SHOWN[values['unit']]}, {values['joint']}'s window"
     assert page.locator(".verdict").inner_text().endswith(f": {classify(f)}")
-    cells = explorer.interpolate(**values)[CELLS]
+    cells = explorer.at_grid(**values)[CELLS]
     paths = [page.locator(f"svg.hinton .{sign}").get_attribute("d") for sign in SIGNS]
     sides = [[float(a) for a in re.findall(r"h([\d.]+)v", path)] for path in paths]
     areas = np.array([np.square(side).sum() for side in sides])

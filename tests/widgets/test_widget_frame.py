@@ -6,8 +6,10 @@ import pytest
 from widget_pages import NEXT_FRAME, Finger, copied, page_of, phone, shown_values
 from widget_samples import make, make_kinds
 
+from ddlib.widgets import Presets
+
 CODE = "result = {gain} * {decay} + {other}"
-PRESETS = {"fast": {"gain": 50, "decay": 2.0}, "slow": {"decay": 0.25}}
+PRESETS = Presets({"fast": {"gain": 50, "decay": 2.0}, "slow": {"decay": 0.25}})
 
 
 def framed(**changes):
@@ -99,7 +101,7 @@ def test_hover_and_keys_read_values(tmp_path, visit, widget):
     path = chart.locator(".frame").get_attribute("d")
     left, right = float(path[1:].split(" ")[0]), float(path.split("H")[1])
     chart.hover(position={"x": left + 0.252 * (right - left), "y": 60})
-    exact = widget.interpolate()["position"][10]
+    exact = widget.at_grid()["position"][10]
     read = box.locator("b").inner_text().replace("−", "-")
     assert box.locator(".where").inner_text() == "time 0.25\u00a0s"
     assert read.endswith("\u00a0m") and float(read[:-2]) == pytest.approx(exact, abs=0.01)

@@ -110,7 +110,7 @@ def test_the_map_is_of_the_exact_errors(full, picker):
     assert full.map["side"] == _AXIS.size and _AXIS[[0, -1]].tolist() == [0, 45]
     low, high = ({c["name"]: c[end] for c in full.spec["curves"]} for end in ("low", "high"))
     for i, j in ((0, 0), (12, 4), (30, 30), (3, 29)):
-        exact = full.interpolate(shoulder_deg=_AXIS[i], elbow_deg=_AXIS[j])
+        exact = full.curves_at(shoulder_deg=_AXIS[i], elbow_deg=_AXIS[j])
         for name, digits in full.map["errors"].items():
             assert len(digits) == 2 * _AXIS.size**2
             at = 2 * (j * _AXIS.size + i)
@@ -131,7 +131,7 @@ browser_test = pytest.mark.browser
 
 def assert_shown(page, widget, extents):
     """The page computes what Python does, and writes the numbers."""
-    exact = widget.interpolate(**dict(zip(("shoulder_deg", "elbow_deg"), extents)))
+    exact = widget.curves_at(**dict(zip(("shoulder_deg", "elbow_deg"), extents)))
     assert_curves(page, exact)
     shown = page.locator(".scalars output").all_inner_texts()
     for scalar, text in zip(widget.spec["scalars"], shown, strict=True):

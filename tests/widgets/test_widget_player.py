@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from widget_pages import NEXT_FRAME, assert_curves, drag, page_of, settings
+from widget_pages import NEXT_FRAME, assert_curves, assert_exact_table, drag, page_of, settings
 
 from ddlib.learning import TorqueModel, TrainingSet, Weights, cases
 from ddlib.setups import STATE_FEEDBACK, split
@@ -46,10 +46,10 @@ def player(model, recording):
 
 
 def test_curves_are_the_recorded_ones(player, model, rmss):
-    assert player.interpolation_error(100, seed=3) < 1e-4
+    assert_exact_table(player)
     for values in settings(player, 40, seed=1):
         k = EPOCHS.tolist().index(values["epoch"])
-        weights, shown = model.weights[k, 1], player.interpolate(**values)
+        weights, shown = model.weights[k, 1], player.at_grid(**values)
         kind, name = values["unit"].split()
         number = int(name) if kind == "hidden" else ("shoulder", "elbow").index(kind)
         part = "hidden_weights" if kind == "hidden" else "direct_weights"

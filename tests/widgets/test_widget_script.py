@@ -10,10 +10,18 @@ import subprocess
 
 import numpy as np
 import pytest
-from widget_pages import NEXT_FRAME, PATHS, READ, page_of, settings
-from widget_samples import T, make, make_kinds, parameters, wave
+from widget_pages import (
+    NEXT_FRAME,
+    PATHS,
+    READ,
+    assert_curves,
+    page_of,
+    settings,
+    shown_values,
+)
+from widget_samples import make, make_kinds, parameters, wave
 
-from ddlib.widgets import CurveWidget, Pad, Panel, Parameter
+from ddlib.widgets import Pad
 
 CI = os.environ.get("CI", "").lower() in {"1", "true"}
 
@@ -37,14 +45,19 @@ def node():
 SCRIPT = """
 import fs from "node:fs";
 const [module, input] = process.argv.slice(2);
-const { interpolate, readTables, insidePolygon, fromFraction, toFraction, ticks, around } =
-  await import(module);
+const { curvesAt, readTable, placeOf, valueNear, stepsOf, insidePolygon, fromFraction, toFraction,
+  ticks, around } = await import(module);
 const { spec, baked, settings, points } = JSON.parse(fs.readFileSync(input));
 const bytes = Uint8Array.from(Buffer.from(baked, "base64"));
-const tables = readTables(spec, new DataView(bytes.buffer));
+const table = readTable(spec, new DataView(bytes.buffer));
+const places = (values) => spec.parameters.map((p, k) => placeOf(p, values[k]));
 const ranged = spec.parameters.map((p, k) => [p, k]).filter(([p]) => !p.options);
 console.log(JSON.stringify({
-  curves: settings.map((values) => [...interpolate(spec, tables, values)]),
+  curves: settings.map((values) => curvesAt(spec, table, places(values)))
+    .map((curves) => Object.values(curves).flatMap((curve) => [...curve])),
+  near: settings.map((values) => spec.parameters.map((p, k) => valueNear(p, values[k], true))),
+  unfit: spec.parameters.map((p) => [undefined, "10", -1e9, 1e9].map((x) => valueNear(p, x))),
+  steps: ranged.map(([p]) => [stepsOf(p, true), stepsOf(p, false)]),
   inside: points.map((p) => insidePolygon(spec.pad?.region ?? [], ...p)),
   back: settings.map((v) => ranged.map(([p, k]) => fromFraction(p, toFraction(p, v[k])))),
   ticks: [[-4, 4, 3], [0, 1, 2], [-0.35, 7.2, 4]].map((t) => ticks(...t)),
@@ -71,13 +84,18 @@ def run_script(node, folder, widget, chosen, points=()):
 
 def assert_same(out, widget, chosen):
     for values, got in zip(chosen, out["curves"], strict=True):
-        expected = np.concatenate(list(widget.interpolate(**values).values()))
-        np.testing.assert_allclose(got, expected, atol=1e-9)
+        expected = np.concatenate(list(widget.at_grid(**values).values()))
+        np.testing.assert_allclose(got, expected, rtol=0, atol=1e-12)
+    points = [p.points() for p in widget._parameters.values()]
+    for values, got in zip(chosen, out["near"], strict=True):
+        places = [widget._parameters[name].nearest(x) for name, x in values.items()]
+        expected = [each[place] for each, place in zip(points, places)]
+        assert all(x == y or x == pytest.approx(y, rel=1e-11) for x, y in zip(got, expected))
 
 
-def test_script_interpolates_as_python_does(node, tmp_path):
+def test_script_snaps_and_reads_as_python_does(node, tmp_path):
     region = [(0, 0), (1, -1), (2, 1)]
-    widget = make(tolerance=1, pad=Pad("decay", "phase", (), region))
+    widget = make(pad=Pad("decay", "phase", (), region))
     corners = ([1, 0, -1], [100, 2, 1], [10, 1, 0])
     ends = [{p.name: x for p, x in zip(parameters(), corner)} for corner in corners]
     chosen = [*settings(widget, 30), *ends]
@@ -85,21 +103,16 @@ def test_script_interpolates_as_python_does(node, tmp_path):
     out = run_script(node, tmp_path, widget, chosen, points)
     assert_same(out, widget, chosen)
     np.testing.assert_allclose(out["back"], [list(v.values()) for v in chosen], atol=1e-9)
+    assert out["unfit"] == [[10, 10, 1, 100], [0.5, 0.5, 0, 2], [0, 0, -1, 1]]
+    assert out["steps"] == [[2, 200], [20, 100], [20, 100]]
     assert out["inside"] == [True, False, True, False]
     assert out["ticks"][0] == [-4, -2, 0, 2, 4] and out["ticks"][1] == [0, 0.5, 1]
     assert out["around"] == [[-5, 10], [0, 0.25], [4, 6], [0.1, 100]]
 
 
-def test_script_reads_choices_and_numbers_of_one_byte(node, tmp_path, waves):
-    a, b = Parameter("a", "a", 0, 3, 1, grid=60), np.arange(30)
-    fading = np.exp(-0.3 * b[:, None] * (1 + T))
-    panel = Panel("y", "y", "x", T)
-    faint = CurveWidget(lambda a: {"y": np.cos(b * a) @ fading}, [a], [panel], alt="a")
-    (group,) = faint.spec["groups"]
-    assert 0 < group["wide"] < group["rank"]
-    for widget in (waves, faint):
-        chosen = list(settings(widget, 40))
-        assert_same(run_script(node, tmp_path, widget, chosen), widget, chosen)
+def test_script_reads_choices(node, tmp_path, waves):
+    chosen = list(settings(waves, 40))
+    assert_same(run_script(node, tmp_path, waves, chosen), waves, chosen)
 
 
 # In a page without a kernel
@@ -133,3 +146,19 @@ def test_every_control_of_a_choice(tmp_path, visit, waves):
     stems = page.evaluate(READ, 1)
     np.testing.assert_allclose(stems[1], exact["taps"], atol=0.2)
     assert not opened.problems
+
+
+def test_a_slider_without_a_kernel_steps_over_the_grid(tmp_path, visit):
+    widget = make()
+    page = visit(f"{page_of(tmp_path / 'page.html', widget)}?curve-widget=decay:0.93,gain:4").page
+    gain, decay = (page.get_by_role("slider", name=name) for name in ("Gain", "Decay"))
+    assert shown_values(page) == [10, 0.9, 0]  # the nearest points
+    assert (gain.get_attribute("max"), decay.get_attribute("max")) == ("2", "20")
+    for key, place in (("ArrowRight", 10), ("End", 20), ("ArrowLeft", 19), ("Home", 0)):
+        decay.press(key)
+        values = {"gain": 10, "decay": place / 10, "phase": 0}
+        assert shown_values(page)[1] == pytest.approx(values["decay"], abs=0.01)
+        assert_curves(page, widget.at_grid(**values), 1e-12)
+    page.locator(".pad").press("ArrowRight")
+    page.locator(".pad").press("Shift+ArrowUp")
+    assert_curves(page, widget.at_grid(gain=10, decay=0.1, phase=1), 1e-12)

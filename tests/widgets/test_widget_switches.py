@@ -46,7 +46,7 @@ def recorded(effects, times):
     ids=["off", "as assumed", "delay"],
 )
 def test_curves_are_the_recorded_ones(switches, levels, effects):
-    shown = switches.interpolate(**OFF | levels)
+    shown = switches.curves_at(**OFF | levels)
     moving = _TIMES < 3  # a rest after the motion has its own start
     error, torque = recorded(effects, _TIMES[moving])
     np.testing.assert_allclose(shown["error"][moving], error, atol=2e-4)

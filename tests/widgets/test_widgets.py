@@ -20,6 +20,7 @@ from ddlib.widgets import (
     Pad,
     Panel,
     Parameter,
+    Presets,
     Scalar,
     TrainingPlayer,
 )
@@ -61,7 +62,7 @@ BAD_PARAMETERS = [
     ({"low": 0, "scale": "log"}, r"low of k must lie in \(0"),
 ]
 BAD_WIDGETS = [
-    ({"tolerance": 1e-6}, "tolerance|interpolate to 1e-06"),
+    ({"presets": Presets({"both": {"nothing": 1}})}, "preset 'both' must set some of gain"),
     ({"scalars": [Scalar("square", "Square")]}, "square must be one number"),
     ({"pad": Pad("decay", "nothing")}, "parameter of the pad"),
 ]

@@ -29,6 +29,7 @@ from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.chapters.index import both
 from workshop.chapters.widgets import builder
 from workshop.chapters.widgets.builder import FilterBuilder as FilterBuilder
+from workshop.chapters.widgets.fold import FilterFold as FilterFold
 from workshop.report import results
 from workshop.report.evidence.statements import resampled, stated
 from workshop.report.measures import filter_trial as trial

@@ -202,8 +202,6 @@ class MassAndPenalty(CurveWidget):
                     Scalar("now", "Inertia in the filter", "kg m²", 2),
                     Scalar("half", "Half of the arm's, by theory, at a penalty of", scale="power"),
                 ],
-                "depends": {"mass": ("drive", "skip"), "half": ("drive", "skip"),
-                            "place": ("penalty",)},
                 "note": "Mean over the training cases of five runs, window 21, inputs centred.",
                 **options,
             },

@@ -22,7 +22,7 @@ def _quoted() -> None:
     times = np.array(tuner.spec["panels"][0]["x"])
     late = (times >= 1) & (times < 3)
     for name, move in moves.items():
-        seen = tuner.interpolate(**move)
+        seen = tuner.curves_at(**move)
         quote(f"pid-tune-margin-{name}", seen["shoulder phase margin"][0])
         quote(f"pid-tune-late-{name}", np.sqrt((seen["shoulder error"][late] ** 2).mean()))
 

@@ -203,7 +203,7 @@ def _quoted() -> None:
         quote(f"left-friction-{name}", 100 * (rubbing / sizes[whole])[0])
     for name in ("friction", "quantisation", "saturation"):
         alone = dict.fromkeys(switches.values, "off") | {name: "strong"}
-        quote(f"left-{name}-position", switches.interpolate(**alone)["shoulder position"][0])
+        quote(f"left-{name}-position", switches.curves_at(**alone)["shoulder position"][0])
 
 
 def _exercise(number: int, arm=None, kp=None, other=None, extents=None) -> Exercise:

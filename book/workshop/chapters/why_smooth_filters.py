@@ -12,7 +12,7 @@ from ddlib.learning import Directions, TrainingSet
 from ddlib.setups import WINDOWS
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
-from ddlib.widgets.hinton import CENTRE, EXACT, JOINTS, share_panel, width_choice, zero_padded
+from ddlib.widgets.hinton import CENTRE, JOINTS, share_panel, width_choice, zero_padded
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
 from workshop.report import results
@@ -60,7 +60,7 @@ class _SpectrumExplorer(CurveWidget):
     """Pick a direction of the windows; see its shape, and watch it being learnt.
 
     Curves are medians over the networks of the study "span". The slider steps over the epochs
-    that it kept; nothing is interpolated.
+    that it kept.
 
     Parameters
     ----------
@@ -100,9 +100,7 @@ class _SpectrumExplorer(CurveWidget):
         self._places = np.clip(places, 1e-3 * places[-1], (1 - 1e-3) * places[-1])
         time = np.arange(-self._reach, self._reach + 1) * LOG_STEP * 1e3
         over = {"cursor": "place", "x_scale": "power"}
-        cell, per_epoch = ("case", "width", "direction"), ("case", "width", "direction", "epoch")
         shape = [f"{joint} shape" for joint in JOINTS]
-        courses = [f"{what} {who}" for what in ("change", "error") for who in _WHO]
         super().__init__(
             self._curves,
             [
@@ -156,14 +154,8 @@ class _SpectrumExplorer(CurveWidget):
                     for who in _WHO
                 ),
             ],
-            depends={
-                **dict.fromkeys((*shape, *courses, "shares", "variance"), cell),
-                **dict.fromkeys((f"now {who}" for who in _WHO), per_epoch),
-                **dict.fromkeys(("first", "last"), ("width",)),
-                "place": ("epoch",),
-            },
             note="Where the change is below 1, the random start outweighs what was learnt.",
-            **{"tolerance": EXACT, **options},
+            **options,
         )
 
     def _curves(self, case, width, direction, epoch) -> dict:

@@ -24,11 +24,11 @@ from ddlib.paper import HIDDEN_UNITS
 from ddlib.setups import INITIAL, JOINT_DAMPING, Setup
 from ddlib.simulation import LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG
-from ddlib.widgets._baking.still import still_picture
-from ddlib.widgets.base import SCRIPT, STYLE, _PageWidget, module
+from ddlib.widgets.base import SCRIPT, STYLE, PageWidget, module
 from ddlib.widgets.engine._plain import _FIELDS, _TRAINING, ENGINE, lean, loop, plant
 from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.picker import _pad, _parameters
+from ddlib.widgets.still import still_picture
 
 _FINEST = 5e-5  # step of the encoder, rad: readings are sent as int16
 _EVERY = 5  # of the training windows the page shows every fifth; of trajectory 6 all
@@ -90,7 +90,7 @@ def _bytes(value, _):
     return bytes(value)
 
 
-class NetworkTrainer(_PageWidget):
+class NetworkTrainer(PageWidget):
     """Record trajectories in the page, train a window network on them, read the inertia in it.
 
     Errors, torques and the filters of all units are seen on the way. Everything is computed in the

@@ -1,4 +1,4 @@
-"""What every widget has: its name in the page's address, its state as code, and presets."""
+"""What every widget has: its name in the page's address, and its state as code."""
 
 from __future__ import annotations
 
@@ -6,8 +6,6 @@ import inspect
 import json
 import re
 from collections.abc import Mapping
-
-from ddlib.widgets.parts.parameters import Choice, Parameter
 
 
 def key_of(kind: type) -> str:
@@ -38,15 +36,3 @@ def _literal(value: str | int | float | bool) -> str:
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False)
     return str(value) if isinstance(value, (bool, int)) else f"{value:.6g}"
-
-
-def checked_presets(presets: Mapping | None, parameters: Mapping[str, Parameter | Choice]) -> list:
-    """Labels and values of presets, each value checked by its parameter."""
-    checked = []
-    for label, values in (presets or {}).items():
-        for name in values:
-            if name not in parameters:
-                known = ", ".join(parameters)
-                raise ValueError(f"preset {label!r} must set some of {known}, got {name}")
-        checked.append([str(label), {n: parameters[n].check(v) for n, v in values.items()}])
-    return checked

@@ -21,6 +21,10 @@ def _check_name(name):
 class Parameter:
     """A quantity that the reader can change.
 
+    A slider steps over the points of its grid, at which the curves were computed, and a built page
+    has nothing between; with a kernel, code may set any value. Where the page itself computes, the
+    slider goes anywhere.
+
     Parameters
     ----------
     name : str
@@ -34,9 +38,9 @@ class Parameter:
     unit : str
         Shown after the value.
     grid : int
-        Number of baked points, 2 or more.
+        Number of points from `low` to `high`, 2 or more.
     scale : {"linear", "log"}
-        Spacing of the baked points and of the slider.
+        Spacing of these points and of the slider.
     """
 
     name: str
@@ -45,7 +49,7 @@ class Parameter:
     high: float
     value: float
     unit: str = ""
-    grid: int = 7
+    grid: int = 21
     scale: str = "linear"
 
     def __post_init__(self):
@@ -64,7 +68,7 @@ class Parameter:
         return number(self.name, value, self.low, self.high)
 
     def points(self) -> list[float]:
-        """The baked points."""
+        """The points of the grid."""
         return [min(self.place(f), float(self.high)) for f in np.linspace(0, 1, self.grid)]
 
     def place(self, fraction) -> float:
@@ -73,41 +77,14 @@ class Parameter:
             return float(self.low * (self.high / self.low) ** fraction)
         return float(self.low + (self.high - self.low) * fraction)
 
-    def weights(self, value) -> list[tuple[int, float]]:
-        """Places of the interval's four B-splines among a spline's coefficients, and weights."""
+    def nearest(self, value) -> int:
+        """Place of the grid point that is nearest to a value."""
         x = self.check(value)
         if self.scale == "log":
-            position = np.log(x / self.low) / np.log(self.high / self.low)
+            fraction = np.log(x / self.low) / np.log(self.high / self.low)
         else:
-            position = (x - self.low) / (self.high - self.low)
-        position = position * (self.grid - 1)
-        i = min(max(int(position), 0), self.grid - 2)
-        f = position - i
-        w = [
-            (1 - f) ** 3 / 6,
-            ((3 * f - 6) * f * f + 4) / 6,
-            (((3 - 3 * f) * f + 3) * f + 1) / 6,
-            f**3 / 6,
-        ]
-        return list(zip(range(i, i + 4), w))
-
-    def coefficients(self) -> np.ndarray:
-        """The matrix from values at the baked points to a spline's coefficients.
-
-        Cubic, its third derivative continuous at the second point and at the last but one: cubic
-        polynomials come out exactly ("not a knot", de Boor 1978, chapter IV).
-        """
-        n = self.grid
-        system = np.zeros((n + 2, n + 2))
-        for k in range(n):
-            system[k + 1, k : k + 3] = 1 / 6, 4 / 6, 1 / 6
-        if n == 2:  # a line
-            system[0, :3] = system[-1, 1:] = 1, -2, 1
-        elif n == 3:  # a parabola
-            system[0, :4] = system[-1, 1:] = -1, 3, -3, 1
-        else:
-            system[0, :5] = system[-1, -5:] = 1, -4, 6, -4, 1
-        return np.linalg.inv(system)[:, 1:-1]
+            fraction = (x - self.low) / (self.high - self.low)
+        return round(fraction * (self.grid - 1))
 
     def description(self) -> dict:
         """What the page needs to know."""
@@ -116,7 +93,7 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Choice:
-    """One of a few options; baked at each of them, never interpolated.
+    """One of a few options.
 
     Parameters
     ----------
@@ -185,19 +162,42 @@ class Choice:
         """The key at a `fraction` (0 to 1) of the list."""
         return self.points()[min(int(fraction * self.grid), self.grid - 1)]
 
-    def weights(self, value) -> list[tuple[int, float]]:
-        """The option alone, with weight 1."""
-        return [(self.points().index(self.check(value)), 1.0)]
-
-    def coefficients(self) -> np.ndarray:
-        """The identity: options have nothing between them."""
-        return np.eye(self.grid)
+    def nearest(self, value) -> int:
+        """Place of a key among the options."""
+        return self.points().index(self.check(value))
 
     def description(self) -> dict:
         """What the page needs to know."""
         options = [[key, label] for key, label in self.options.items()]
         fields = {f: getattr(self, f) for f in ("name", "label", "value", "display", "grid")}
         return {**fields, "options": options}
+
+
+@dataclass(frozen=True)
+class Presets:
+    """Buttons that set several parameters at once.
+
+    Parameters
+    ----------
+    options : mapping
+        Label of each button -> value by name of a parameter.
+    title : str
+        What stands before the buttons.
+    """
+
+    options: Mapping[str, Mapping]
+    title: str = "Go to"
+
+    def description(self, parameters: Mapping[str, Parameter | Choice]) -> dict | None:
+        """What the page needs to know, each value checked by its parameter; None for no button."""
+        checked = []
+        for label, values in self.options.items():
+            for name in values:
+                if name not in parameters:
+                    known = ", ".join(parameters)
+                    raise ValueError(f"preset {label!r} must set some of {known}, got {name}")
+            checked.append([str(label), {n: parameters[n].check(v) for n, v in values.items()}])
+        return {"title": self.title, "options": checked} if checked else None
 
 
 def _plain(value):

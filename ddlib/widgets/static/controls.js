@@ -3,7 +3,7 @@
 function slider(view, p, k) {
   const id = `${view.id}-${p.name}`;
   const output = make("output", { for: id });
-  const steps = Math.round(1 / stepOf(p));
+  const steps = stepsOf(p, view.stepped);
   const input = make("input", { id, type: "range", min: 0, max: steps, step: 1 });
   input.addEventListener("input", () => view.set({ [k]: fromFraction(p, input.value / steps) }));
   const update = () => {
@@ -51,9 +51,10 @@ function choice(view, p, k) {
 function presetsOf(view) {
   const { title, options } = view.spec.presets;
   const buttons = options.map(([label, values]) => buttonOf(label, () => view.set(values)));
+  const near = (name, value) => view.near(view.parameter(name), value);
   const update = () => {
     options.forEach(([, values], i) => {
-      const stands = Object.entries(values).every(([name, value]) => view.get(name) === value);
+      const stands = Object.entries(values).every(([name, value]) => view.get(name) === near(name, value));
       buttons[i].setAttribute("aria-pressed", String(stands));
     });
   };
@@ -140,8 +141,9 @@ function padOf(view) {
     const way = WAYS[event.key];
     if (!way) return false;
     const [fx, fy] = [toFraction(px, view.values[i]), toFraction(py, view.values[j])];
-    const steps = event.key.startsWith("Arrow") ? (event.shiftKey ? 10 : 1) : 1e6; // or to the edge
-    move(fx + steps * stepOf(px) * way[0], fy + steps * stepOf(py) * way[1]);
+    const count = event.key.startsWith("Arrow") ? (event.shiftKey ? 10 : 1) : 1e6; // or to the edge
+    const along = (p, step) => (count * step) / stepsOf(p, view.stepped);
+    move(fx + along(px, way[0]), fy + along(py, way[1]));
   });
 
   const legend = make("div", { class: "legend" });

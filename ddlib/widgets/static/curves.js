@@ -1,42 +1,41 @@
-// Shows a CurveWidget (base.py). Follows baked.js, frame.js, charts.js and controls.js in every
-// widget's module. With a kernel the exact curves replace the interpolated ones.
+// Shows a CurveWidget (base.py). With a kernel its exact curves replace those of the table, which has
+// every setting of the parameters' grids.
 
 const PATIENCE = 2000; // ms to wait for a kernel
 const QUIET = 700; // ms without a change after which the figure is described anew
 
 // Functions of the view, for widgets with more to show; each may return one that cleans up.
 // The view has: model, spec, el, id, values (in the order of spec.parameters), curves (by name),
-// get(name), set({name: value}), after (called with the curves after each redraw), charts,
+// get(name), parameter(name), set({name: value}), after (called with the curves after each redraw), charts,
 // controls, top, numbers (a list between controls and charts), words (returns texts to be spoken), say(text),
 // schedule() (redraws in the next frame), pad (its parts), keep(name, read, write) (a part of the state that is no
 // parameter, see frame.js) with changed(), and resets (called by Reset).
 const extras = [];
 
-// What a widget that computes in the page sets (engine/_live.py): the view's curves by name; they end
-// in NaN where a run is over.
+// What a widget that computes in the page sets (`Live` in table.py): of the view, curves by name; they
+// end in NaN where a run is over.
 let live = null;
 
 function build({ model, el }) {
   const spec = model.get("spec");
-  if (spec?.live) checkSpec(spec);
-  const tables = spec?.live ? null : readTables(spec, model.get("baked"));
+  const table = readTable(spec, model.get("baked"));
   const names = spec.parameters.map((p) => p.name);
-  const view = { model, el, spec, id: freshId() };
+  const view = { model, el, spec, id: freshId(), stepped: !spec.live };
+  // Without a kernel there is nothing between the settings of the table.
+  view.near = (p, value) => valueNear(p, value, view.stepped && model.kernelless);
+  const read = () => {
+    view.values = spec.parameters.map((p) => view.near(p, model.get(p.name)));
+  };
+  read();
   view.resets = [];
   const frame = frameOf({
     ...{ el, key: spec.key, title: spec.title, linked: Boolean(model.kernelless) },
     reset: () => view.resets.forEach((callback) => callback()),
-    code: () => codeOf(spec, names.map((name) => model.get(name))),
+    code: () => codeOf(spec, view.values),
   });
   Object.assign(view, { keep: frame.keep, changed: frame.changed });
-  const read = () => {
-    const values = names.map((name) => model.get(name));
-    spec.parameters.forEach((p, k) => checkValue(p, values[k]));
-    view.values = values;
-  };
-  read();
-  for (const p of spec.parameters) {
-    const now = () => String(model.get(p.name));
+  for (const [k, p] of spec.parameters.entries()) {
+    const now = () => String(view.values[k]);
     const put = (text) => {
       const change = { [p.name]: valueOfText(p, text) };
       if (view.set) view.set(change);
@@ -65,7 +64,7 @@ function build({ model, el }) {
   const problem = make("p", { class: "problem", role: "alert", hidden: "" });
   const spoken = make("p", { class: "spoken", "aria-live": "polite" });
   view.say = (text) => (spoken.textContent = text);
-  const footer = make("p", { class: "footer" }, footerText(model, spec));
+  const footer = make("p", { class: "footer" }, footerText(model, spec, table));
   const told = scalars.length ? [view.numbers] : [];
   const remark = spec.note ? [make("p", { class: "remark" }, spec.note)] : [];
   el.replaceChildren(frame.el, view.top, ...told, charts, ...remark, note, problem, footer, spoken);
@@ -75,10 +74,11 @@ function build({ model, el }) {
     const { values, error } = model.get("answer") ?? {};
     const exact = model.get("exact");
     const fresh = values?.length === names.length && values.every((v, k) => v === view.values[k]);
-    view.exact = fresh && exact?.byteLength === 4 * samplesOf(spec);
+    view.exact = fresh && exact?.byteLength === 4 * samplesOf(spec.curves);
     problem.hidden = !(fresh && error);
     write(problem, problem.hidden ? "" : `The exact curves could not be computed. ${error}`);
-    return view.exact ? numbersOf(exact, "Float32") : interpolate(spec, tables, view.values);
+    if (view.exact) return split(spec.curves, numbersOf(exact, "Float32"));
+    return curvesAt(spec, table, spec.parameters.map((p, k) => placeOf(p, view.values[k])));
   }
 
   view.after = [];
@@ -88,7 +88,7 @@ function build({ model, el }) {
   // Everything but the charts.
   function update() {
     due = 0;
-    view.curves = spec.live ? live(view) : split(spec, current());
+    view.curves = spec.live ? { ...current(), ...live(view) } : current();
     controls.forEach((control) => control.update());
     for (const { name, output, unit, digits, scale } of scalars) {
       const { low, high } = spec.curves.find((curve) => curve.name === name);
@@ -96,7 +96,7 @@ function build({ model, el }) {
       const text = scale === "power" ? powerText(value) : format(value, low, high, unit, digits);
       write(output, Number.isNaN(value) ? "none" : text);
     }
-    el.dataset.values = spec.live ? "computed" : view.exact ? "exact" : "interpolated";
+    el.dataset.values = spec.live ? "computed" : view.exact ? "exact" : "baked";
   }
   function redraw() {
     update();
@@ -151,6 +151,7 @@ function build({ model, el }) {
   }
 
   view.get = (name) => view.values[names.indexOf(name)];
+  view.parameter = (name) => spec.parameters[names.indexOf(name)];
   // Changes by name, or by place among the parameters.
   view.set = (changes) => {
     moved = true;
@@ -203,32 +204,18 @@ function build({ model, el }) {
   return stop;
 }
 
-// A parameter's value from its text in the address, or an error.
-function valueOfText(p, text) {
-  const value = p.options ? p.options.find(([key]) => String(key) === text)?.[0] : Number(text);
-  checkValue(p, value);
-  return value;
-}
-
 // The state as Python code: names in braces stand for values.
 function codeOf(spec, values) {
   const texts = spec.parameters.map((p, k) => [p.name, python(values[k])]);
   return filled(spec.code, Object.fromEntries(texts));
 }
 
-function footerText(model, spec) {
-  if (spec.live) return "This page computes while you move things.";
-  const percent = Number((100 * spec.error).toPrecision(2)) || "below 0.001";
+function footerText(model, spec, table) {
+  if (!table.curves.length) return "This page computes while you move things.";
   const points = spec.parameters.map((p) => p.grid).join(" × ");
-  const measured = `at most ${percent} % of a curve's range, at ${spec.checks} random settings`;
-  if (spec.parameters.every((p) => p.options)) {
-    return model.kernelless
-      ? `Computed for all ${points} settings when the page was built.`
-      : "The kernel sends exact values. Until they come, you see values computed beforehand.";
-  }
-  return model.kernelless
-    ? `Interpolated between ${points} settings computed when the page was built. Error: ${measured}.`
-    : `The kernel sends exact values. Until they come, you see interpolated ones. Their error: ${measured}.`;
+  return model.kernelless || spec.live
+    ? `Computed for all ${points} settings when the page was built.`
+    : "The kernel sends exact values. Until they come, you see values computed beforehand.";
 }
 
 const render = safely(build);

@@ -60,7 +60,7 @@ function dress(el, label, ...kinds) {
 // What the ids of a widget's elements begin with.
 const freshId = () => `dd${Math.random().toString(36).slice(2, 10)}`;
 
-const SIZES = { Float64: 8, Float32: 4, Int16: 2 };
+const SIZES = { Float64: 8, Float32: 4, Int16: 2, Uint16: 2 };
 
 // The little-endian numbers in the bytes of a trait.
 function numbersOf(bytes, kind) {

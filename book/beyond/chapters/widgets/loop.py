@@ -76,7 +76,6 @@ class LoopLearner(CurveWidget):
                 "friction as multiples of the true values.",
                 "title": "The loop with a learner inside",
                 "note": _NOTE,
-                "depends": {"nobody": ["load", "friction"]},
                 **options,
             },
         )

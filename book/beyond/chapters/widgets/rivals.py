@@ -73,8 +73,6 @@ class RivalPicker(CurveWidget):
                 y_fit=True,
             ),
         ]
-        place = ["shoulder", "elbow"]
-        depends = {f"{j}, {line}": place for j in JOINTS for line in lines[:2]}
         super().__init__(
             self._curves,
             [
@@ -89,7 +87,6 @@ class RivalPicker(CurveWidget):
                 f"the {rival}; below, bars with the errors of {len(rivals)} rivals.",
                 "title": "Picker of rivals",
                 "note": _NOTE,
-                "depends": {**depends, "errors": place},
                 **options,
             },
         )

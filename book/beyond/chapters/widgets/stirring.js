@@ -8,6 +8,29 @@ function armAt([l1, l2], first, second) {
   return [elbow, [elbow[0] + l2 * Math.cos(b), elbow[1] + l2 * Math.sin(b)]];
 }
 
+// Joint angles in degrees of a hand that goes round once in `period` seconds, from the far point; zero
+// for a circle that it cannot follow.
+live = (view) => {
+  const { lengths: [l1, l2], reach, times } = view.model.get("workspace");
+  const [distance, bearing, radius, period, elbow] = view.values;
+  const refused = distance + radius >= reach[1] || distance - radius <= reach[0];
+  const [first, second] = [[], []];
+  let before = 0;
+  for (const t of refused ? [] : times) {
+    const [at, phase] = [(bearing * Math.PI) / 180, (bearing * Math.PI) / 180 + (2 * Math.PI * t) / period];
+    const x = distance * Math.cos(at) + radius * Math.cos(phase);
+    const y = distance * Math.sin(at) + radius * Math.sin(phase);
+    const cosine = (x * x + y * y - l1 * l1 - l2 * l2) / (2 * l1 * l2);
+    const sine = Math.sqrt(1 - cosine * cosine) * (elbow === "negative" ? -1 : 1);
+    const shoulder = Math.atan2(y, x) - Math.atan2(l2 * sine, l1 + l2 * cosine);
+    before = shoulder - (first.length ? 2 * Math.PI * Math.round((shoulder - before) / (2 * Math.PI)) : 0);
+    first.push((before * 180) / Math.PI);
+    second.push((Math.atan2(sine, cosine) * 180) / Math.PI);
+  }
+  const none = times.map(() => 0);
+  return { "shoulder angle": refused ? none : first, "elbow angle": refused ? none : second };
+};
+
 extras.push((view) => {
   const { spec } = view;
   const { lengths, reach, box } = view.model.get("workspace");

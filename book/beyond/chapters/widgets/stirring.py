@@ -17,6 +17,7 @@ from ddlib.trajectories import MOTION_SECONDS
 from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
 from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.parts.parameters import Choice
+from ddlib.widgets.table import Live
 from workshop.report import results
 
 _HERE = Path(__file__).parent
@@ -55,7 +56,7 @@ class StirringPicker(CurveWidget):
     _esm = module(*SCRIPT, _HERE / "stirring.js")
     _css = module(*STYLE, _HERE / "stirring.css")
 
-    workspace = t.Dict(help="lengths, reach and part that is drawn, m", read_only=True)
+    workspace = t.Dict(help="lengths, reach, part that is drawn, m; times, s", read_only=True)
     workspace.tag(sync=True)
 
     def __init__(self, path: Path = results.FOLDER / "stirring-picker.npz", **options):
@@ -104,12 +105,18 @@ class StirringPicker(CurveWidget):
                 "below, bars with the error of the hand for five kinds of torques sent in advance.",
                 "title": "A circle for the hand",
                 "note": _NOTE,
+                "live": Live([f"{joint} angle" for joint in JOINTS]),
                 **options,
             },
         )
         lengths, limits = map(float, _ARM.lengths), list(reach(_ARM))
-        space = {"lengths": list(lengths), "reach": limits, "box": list(_BOX)}
-        self.set_trait("workspace", space)
+        space = {
+            "lengths": list(lengths),
+            "reach": limits,
+            "box": list(_BOX),
+            "times": times.tolist(),
+        }
+        self.set_trait("workspace", {**space, "times": times.tolist()})
 
     def _curves(self, **place) -> dict:
         at = tuple(PLACES[name].index(place[name]) for name in PLACES)

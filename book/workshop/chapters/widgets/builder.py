@@ -14,10 +14,10 @@ from ddlib.learning import sliding_windows
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, Setup, split, true_states
 from ddlib.simulation import LOG_STEP
-from ddlib.widgets._baking.still import still_picture
-from ddlib.widgets.base import SCRIPT, STYLE, _PageWidget, module
+from ddlib.widgets.base import SCRIPT, STYLE, PageWidget, module
 from ddlib.widgets.engine._plain import lean, plant
 from ddlib.widgets.parts.panels import Panel
+from ddlib.widgets.still import still_picture
 
 _HERE = Path(__file__).parent
 
@@ -104,7 +104,7 @@ def _textbook(width: int, derivative: int = 2) -> np.ndarray:
     return np.pad(f, (_WIDTH - width) // 2)
 
 
-class FilterBuilder(_PageWidget):
+class FilterBuilder(PageWidget):
     """Draw 21 weights that measure acceleration; see output, error and gain at once.
 
     Everything is computed in the page, with a kernel and without. Least squares and a trained

@@ -27,11 +27,11 @@ from ddlib.trajectories import (
     pick_and_place,
     smooth_pick_and_place,
 )
-from ddlib.widgets.base import SCRIPT, STYLE, module
-from ddlib.widgets.engine._live import LiveWidget
+from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
 from ddlib.widgets.engine._plain import ENGINE, gains, lean, plant
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice, Parameter
+from ddlib.widgets.table import Live
 
 _HERE = Path(__file__).parent
 
@@ -48,13 +48,13 @@ _SWITCH = {False: "off", True: "on"}
 _CODE = """\
 from workshop.chapters.widgets.feedforward import FeedforwardSwitches
 
-FeedforwardSwitches().interpolate(
+FeedforwardSwitches().curves_at(
     model={model}, masses={masses}, known={known}, feedback={feedback},
     friction={friction}, jump={jump},
 )"""
 
 
-class FeedforwardSwitches(LiveWidget):
+class FeedforwardSwitches(CurveWidget):
     """Switch the model, its errors, the feedback and the friction of Figure 2-1 on and off.
 
     The arm goes out and back as far as trajectory 1, from rest to rest or with the jump of velocity
@@ -66,7 +66,7 @@ class FeedforwardSwitches(LiveWidget):
     arm : Arm
         The arm that moves.
     **options
-        Passed on to `LiveWidget`.
+        Passed on to `CurveWidget`.
     """
 
     _esm = module(*SCRIPT) + lean(module(*ENGINE, _HERE / "feedforward.js"))
@@ -103,7 +103,7 @@ class FeedforwardSwitches(LiveWidget):
                     y_fit=True,
                 ),
             ],
-            examples=[{"model": True}, {"feedback": False}],
+            live=Live(examples=[{"model": True}, {"feedback": False}]),
             title="Switch Figure 2-1 of the report",
             alt=(
                 "Error and torque of the shoulder on a smooth motion with feedback alone. The "

@@ -15,12 +15,12 @@ from ddlib.effects import IDEAL
 from ddlib.figures import illustrate
 from ddlib.setups import JOINT_DAMPING_KP as KP, JOINT_DAMPING_VISCOUS
 from ddlib.simulation import CONTROL_STEP
-from ddlib.widgets._baking.still import START, encoded
-from ddlib.widgets.base import _FRAME, STYLE, _PageWidget, module
+from ddlib.widgets.base import _FRAME, STYLE, PageWidget, module
 from ddlib.widgets.engine._loops import LOOPS, linear, modes
 from ddlib.widgets.engine._plain import ENGINE, lean, plant
 from ddlib.widgets.parts._common import key_of
 from ddlib.widgets.parts.parameters import Parameter
+from ddlib.widgets.still import START, encoded
 
 _HERE = Path(__file__).parent
 
@@ -28,7 +28,7 @@ _HERE = Path(__file__).parent
 _SHARE = np.array([1.0, JOINT_DAMPING_VISCOUS[1] / JOINT_DAMPING_VISCOUS[0]])
 
 
-class _LiveSentence(_PageWidget):
+class _LiveSentence(PageWidget):
     """A sentence with numbers to drag or to step, and the consequence in the same sentence.
 
     `parts` are its pieces: plain text, a name of a number in braces, and once or more a name of a

@@ -10,7 +10,7 @@ from ddlib.analysis import decompose, shares
 from ddlib.learning import Weights
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.base import CurveWidget
-from ddlib.widgets.hinton import CENTRE, EXACT, JOINTS, share_panel
+from ddlib.widgets.hinton import CENTRE, JOINTS, share_panel
 from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.parts.parameters import Choice
 
@@ -59,7 +59,6 @@ class UnitFromFiveStarts(CurveWidget):
                 "note": "All starts use the same random numbers, made larger or smaller. The "
                 "recording and the number of epochs stay the same. The last bar is the share that "
                 "follows neither the constant nor one of the three derivatives.",
-                "tolerance": EXACT,
                 **options,
             },
         )  # fmt: skip

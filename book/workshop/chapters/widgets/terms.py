@@ -13,11 +13,11 @@ from ddlib.effects import Effects
 from ddlib.figures import JOINTS
 from ddlib.setups import JOINT_DAMPING, Setup
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, pick_and_place
-from ddlib.widgets.base import SCRIPT, STYLE, module
-from ddlib.widgets.engine._live import LiveWidget
+from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
 from ddlib.widgets.engine._plain import ENGINE, lean, plant
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
+from ddlib.widgets.table import Live
 
 _HERE = Path(__file__).parent
 
@@ -41,7 +41,7 @@ terms = with_load(CMU_DD_ARM_II, {load}).torque_terms(*motion)
 {name: np.sqrt((term**2).mean(0)) for name, term in terms.items()}"""
 
 
-class TorqueTerms(LiveWidget):
+class TorqueTerms(CurveWidget):
     """The arm along a motion of Appendix I, and the torque of each joint by its origin.
 
     The curves have letters until the reader has guessed which term is the elbow's largest. The
@@ -54,7 +54,7 @@ class TorqueTerms(LiveWidget):
     extents_deg : array_like, shape (motions, 2)
         Extents of shoulder and elbow, degrees, two motions or more.
     **options
-        Passed on to `LiveWidget`.
+        Passed on to `CurveWidget`.
     """
 
     _esm = module(*SCRIPT) + lean(
@@ -106,10 +106,12 @@ class TorqueTerms(LiveWidget):
                 Scalar(f"{joint} ratio", f"Speed terms over acceleration terms, {joint}", "%", 1)
                 for joint in JOINTS
             ],
-            examples=[
-                {"doubled": True, "load": max(_LOADS)},
-                {"doubled": True, "friction": True},
-            ],
+            live=Live(
+                examples=[
+                    {"doubled": True, "load": max(_LOADS)},
+                    {"doubled": True, "friction": True},
+                ]
+            ),
             **{"code": _CODE, **options},
         )
         given = plant(setup.arm, self._effects)

@@ -15,9 +15,9 @@ from ddlib.paper import TEST_TRAJECTORY
 from ddlib.setups import JOINT_DAMPING, Setup, predict
 from ddlib.simulation import CONTROL_STEP, LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS
-from ddlib.widgets._baking.still import START, encoded
-from ddlib.widgets.base import STYLE, _PageWidget, module
+from ddlib.widgets.base import STYLE, PageWidget, module
 from ddlib.widgets.engine._plain import ENGINE, _weight_bytes, gains, lean, network, plant
+from ddlib.widgets.still import START, encoded
 
 _HERE = Path(__file__).parent
 
@@ -35,7 +35,7 @@ _HINT = (
 )
 
 
-class ThrownArm(_PageWidget):
+class ThrownArm(PageWidget):
     """Throw a simulated arm; a window network tells the torque from positions alone.
 
     Everything is computed in the page by the live engine (``static/engine.js``), with a kernel

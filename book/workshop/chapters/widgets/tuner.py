@@ -17,12 +17,12 @@ from ddlib.paper import TEST_TRAJECTORY
 from ddlib.setups import JOINT_DAMPING_KP as KP, JOINT_DAMPING_VISCOUS
 from ddlib.simulation import CONTROL_STEP, LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
-from ddlib.widgets.base import SCRIPT, STYLE, module
-from ddlib.widgets.engine._live import LiveWidget
+from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
 from ddlib.widgets.engine._loops import LOOPS, controller, linear, modes, run
 from ddlib.widgets.engine._plain import ENGINE, lean, plant
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice, Parameter
+from ddlib.widgets.table import Live
 
 _HERE = Path(__file__).parent
 
@@ -152,7 +152,7 @@ _QUESTIONS = (
 )
 
 
-class PIDTuner(LiveWidget):
+class PIDTuner(CurveWidget):
     """Tune the gains of both joints on trajectory 6; the arm moves, and so does the last one.
 
     The sliders set the shoulder's gains; the elbow's are in the ratio of `JOINT_DAMPING_KP`, its
@@ -167,7 +167,7 @@ class PIDTuner(LiveWidget):
     arm : Arm
         The arm that moves.
     **options
-        Passed on to `LiveWidget`.
+        Passed on to `CurveWidget`.
     """
 
     _esm = module(*SCRIPT) + lean(
@@ -202,7 +202,7 @@ class PIDTuner(LiveWidget):
                 for what, unit in (("error", "°"), ("torque", "N m"))
                 for joint in JOINTS
             ],
-            examples=[{"kd": 60.0}, {"kp": 50.0}],
+            live=Live(examples=[{"kd": 60.0}, {"kp": 50.0}]),
             title="PID tuner",
             alt=(
                 "Tracking error and torque of both joints over trajectory 6 with the springs and "

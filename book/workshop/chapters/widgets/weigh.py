@@ -9,7 +9,7 @@ import numpy as np
 from ddlib._check import shaped
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.base import CurveWidget
-from ddlib.widgets.hinton import CENTRE, EXACT
+from ddlib.widgets.hinton import CENTRE
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
 
@@ -84,7 +84,6 @@ class WeighTheArm(CurveWidget):
                     Scalar("now", "Sum", "kg m²", 2),
                     Scalar("true", "The arm's own", "kg m²", 2),
                 ],
-                "tolerance": EXACT,
                 "note": "Shaded: the samples that are added up so far.",
                 **options,
             },

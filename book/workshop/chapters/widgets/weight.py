@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ddlib.widgets import LiveWidget, Panel, Parameter, Scalar
+from ddlib.widgets import CurveWidget, Live, Panel, Parameter, Scalar
 from ddlib.widgets.base import SCRIPT, STYLE, module
 
 _HERE = Path(__file__).parent
@@ -16,7 +16,7 @@ _WEIGHTS = np.linspace(-8.0, 8.0, 161)
 _STEEPEST = 0.1  # more than any slope of the error
 
 
-class OneWeight(LiveWidget):
+class OneWeight(CurveWidget):
     """Turn the weight of a single unit by hand, then let it step against the slope.
 
     The unit has an input of 1 and no bias, so its sum is the weight. It should answer 0.7. The page
@@ -61,13 +61,15 @@ class OneWeight(LiveWidget):
                     Scalar("slope", "Slope of the error", digits=4),
                     Scalar("step", "Next step of the weight", digits=3),
                 ],
-                "ranges": {
-                    **dict.fromkeys(("error", "tangent", "errs"), (0.0, middle)),
-                    **dict.fromkeys(("answer", "answers"), (0.0, 1.0)),
-                    "slope": (-_STEEPEST, _STEEPEST),
-                    "at": (-8.0, 8.0),
-                    "step": (-8.0, 8.0),
-                },
+                "live": Live(
+                    ranges={
+                        **dict.fromkeys(("error", "tangent", "errs"), (0.0, middle)),
+                        **dict.fromkeys(("answer", "answers"), (0.0, 1.0)),
+                        "slope": (-_STEEPEST, _STEEPEST),
+                        "at": (-8.0, 8.0),
+                        "step": (-8.0, 8.0),
+                    }
+                ),
                 **options,
             },
         )

@@ -14,11 +14,9 @@ from ddlib.analysis import roughness
 from ddlib.figures import COLOURS, illustrate
 from ddlib.figures.weights import dots, hinton_on, relative_weights
 from ddlib.learning import Weights
-from ddlib.widgets._baking.still import START, encoded
 from ddlib.widgets.base import SCRIPT, STYLE, Panel, Scalar, module
 from ddlib.widgets.hinton import (
     CENTRE,
-    EXACT,
     JOINTS,
     _diagram,
     _HintonWidget,
@@ -26,6 +24,7 @@ from ddlib.widgets.hinton import (
     weight_functions,
 )
 from ddlib.widgets.parts.parameters import Choice
+from ddlib.widgets.still import START, encoded
 
 _HERE = Path(__file__).parent
 
@@ -113,14 +112,8 @@ class WeightReader(_HintonWidget):
                 Scalar("largest", "Largest weight of the row", digits=3),
                 Scalar("roughness", "Roughness of the row (noise: 1)", digits=3),
             ],
-            depends={
-                "weights of all units": ("subtract", "common"),
-                **dict.fromkeys(("weights", "largest", "roughness"), ("subtract", "unit", "joint")),
-                **dict.fromkeys(("lowest", "highest"), ("unit", "joint")),
-                "full": ("common", "unit", "joint"),
-            },
             largest="ever",
-            **{"tolerance": EXACT, **options},
+            **options,
         )
         self._keep(still=self._drawn())
 

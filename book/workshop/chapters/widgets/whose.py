@@ -13,8 +13,8 @@ import traitlets as t
 from ddlib._check import finite_array
 from ddlib.analysis import classify
 from ddlib.figures import INK, illustrate
-from ddlib.widgets._baking.still import START, encoded
-from ddlib.widgets.base import STYLE, _PageWidget, module
+from ddlib.widgets.base import STYLE, PageWidget, module
+from ddlib.widgets.still import START, encoded
 
 _HERE = Path(__file__).parent
 
@@ -30,7 +30,7 @@ class GuessRound(NamedTuple):
     remark: str  #: A sentence after the answer.
 
 
-class WhoseFilters(_PageWidget):
+class WhoseFilters(PageWidget):
     """Guess which of two galleries of filters learnt this arm's torques; the guesses are counted.
 
     Each filter is drawn as high as its own largest weight. Names by the rule come with the answer.

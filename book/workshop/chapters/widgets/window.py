@@ -12,16 +12,16 @@ from ddlib._check import finite_array, like
 from ddlib.learning import TorqueModel, sliding_windows
 from ddlib.learning.windows import check_width
 from ddlib.simulation import Recording
-from ddlib.widgets.base import SCRIPT, Panel, Scalar, module
-from ddlib.widgets.engine._live import LiveWidget
+from ddlib.widgets.base import SCRIPT, CurveWidget, Panel, Scalar, module
 from ddlib.widgets.engine._plain import ENGINE, SLIDING, lean, networks
 from ddlib.widgets.hinton import JOINTS, _check_models, common_step, width_choice
 from ddlib.widgets.parts.parameters import Choice
+from ddlib.widgets.table import Live
 
 _HERE = Path(__file__).parent
 
 
-class SlidingWindow(LiveWidget):
+class SlidingWindow(CurveWidget):
     """Slide the window along a motion: inputs, activities and torque at every sample.
 
     The page has the recording and the weights; the live engine computes what the networks make
@@ -36,7 +36,7 @@ class SlidingWindow(LiveWidget):
     first : int, optional
         The window size that is shown first. Default: the middle one.
     **options
-        Passed on to `LiveWidget`.
+        Passed on to `CurveWidget`.
     """
 
     _esm = module(*SCRIPT) + lean(module(*ENGINE, SLIDING, _HERE / "window.js"))
@@ -124,7 +124,7 @@ class SlidingWindow(LiveWidget):
                 for joint in JOINTS
                 for what in ("network", "measured")
             ],
-            ranges=self._ranges(),
+            live=Live(ranges=self._ranges()),
             **options,
         )
         layouts, weights = networks(models.values())
@@ -160,7 +160,7 @@ class SlidingWindow(LiveWidget):
         }
 
 
-class HiddenTorque(LiveWidget):
+class HiddenTorque(CurveWidget):
     """Slide a window along a motion, and guess the torque in its middle before it is seen.
 
     The torque is covered from the window's first sample on.
@@ -172,7 +172,7 @@ class HiddenTorque(LiveWidget):
     width : int
         Samples of the window, odd.
     **options
-        Passed on to `LiveWidget`.
+        Passed on to `CurveWidget`.
     """
 
     _esm = module(*SCRIPT) + lean(module(*ENGINE, SLIDING, _HERE / "hidden.js"))
@@ -218,11 +218,13 @@ class HiddenTorque(LiveWidget):
                 "window beside the straight line between its ends; the torque up to the window, "
                 "covered from there on."
             ),
-            examples=[
-                {"joint": joint, "sample": k, "shown": True}
-                for joint in JOINTS
-                for k in (0, len(self._time) - 1)
-            ],
+            live=Live(
+                examples=[
+                    {"joint": joint, "sample": k, "shown": True}
+                    for joint in JOINTS
+                    for k in (0, len(self._time) - 1)
+                ]
+            ),
             **options,
         )
         motion, half = recording.motion, self._half

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import product
+from pathlib import Path
 
 import numpy as np
+import traitlets as t
 
 from ddlib._check import integer, number, shaped, told
 from ddlib.analysis import decompose
-from ddlib.widgets.base import CurveWidget, Panel
+from ddlib.widgets.base import SCRIPT, CurveWidget, Panel, module
 from ddlib.widgets.hinton import CENTRE
-from ddlib.widgets.parts.parameters import Choice, Parameter
+from ddlib.widgets.parts.parameters import Choice, Parameter, Presets
+from ddlib.widgets.table import Live
+
+_HERE = Path(__file__).parent
 
 _ANGLE, _SPEED, _ACCELERATION = 5.0, 50.0, 1000.0  # ends of the motion's sliders, degrees and s
 _PARTS = ("constant", "even", "odd")
@@ -18,8 +24,6 @@ _PARTS = ("constant", "even", "odd")
 
 class FilterFold(CurveWidget):
     """Fold a row of weights into its constant, even and odd part; move a joint under each of them.
-
-    All curves are linear in the sliders, so that a built page shows them exactly.
 
     Parameters
     ----------
@@ -31,6 +35,11 @@ class FilterFold(CurveWidget):
     **options
         Passed on to `CurveWidget`.
     """
+
+    _esm = module(*SCRIPT, _HERE / "fold.js")
+
+    folding = t.Dict(help="time of the samples, parts and axes of rows", read_only=True)
+    folding.tag(sync=True)
 
     def __init__(self, rows: Mapping[str, np.ndarray], step: float, **options):
         number("step", step, 0.0, open_low=True)
@@ -52,11 +61,11 @@ class FilterFold(CurveWidget):
             self._curves,
             [
                 Choice("row", "Row", labels, labels[0]),
-                Parameter("fold", "Fold", 0, 100, 50, "%", 2),
-                Parameter("angle", "Angle", -_ANGLE, _ANGLE, _ANGLE, "°", 2),
-                Parameter("speed", "Speed", -_SPEED, _SPEED, 0, "°/s", 2),
+                Parameter("fold", "Fold", 0, 100, 50, "%"),
+                Parameter("angle", "Angle", -_ANGLE, _ANGLE, _ANGLE, "°"),
+                Parameter("speed", "Speed", -_SPEED, _SPEED, 0, "°/s"),
                 Parameter("acceleration", "Acceleration", -_ACCELERATION, _ACCELERATION, 0,
-                          "°/s²", 2),
+                          "°/s²"),
             ],
             [
                 Panel("What remains of the row", {"left": "weights"}, CENTRE, ms, kind="stems",
@@ -74,19 +83,24 @@ class FilterFold(CurveWidget):
                 "an even and an odd part. Below, a joint at rest in the window. Bars: how much "
                 "each part of the row adds to what the unit gets."
             ),
-            depends={
-                **dict.fromkeys(("left", *_PARTS), ("row", "fold")),
-                **dict.fromkeys(("least weight", "most weight", *ends), ("row",)),
-                "window": motion,
-            },
-            presets={
-                "Stand still": {"angle": _ANGLE, "speed": 0, "acceleration": 0},
-                "Steady speed": {"angle": 0, "speed": _SPEED, "acceleration": 0},
-                "Speed up": {"angle": 0, "speed": 0, "acceleration": _ACCELERATION},
-            },
-            presets_title="Let the joint",
+            presets=Presets(
+                {
+                    "Stand still": {"angle": _ANGLE, "speed": 0, "acceleration": 0},
+                    "Steady speed": {"angle": 0, "speed": _SPEED, "acceleration": 0},
+                    "Speed up": {"angle": 0, "speed": 0, "acceleration": _ACCELERATION},
+                },
+                "Let the joint",
+            ),
+            live=Live(examples=[dict(zip(("row", "fold", *motion), x)) for x in product(
+                labels, (0, 100), *((-x, x) for x in (_ANGLE, _SPEED, _ACCELERATION))
+            )]),
             **options,
         )  # fmt: skip
+        folding = {
+            label: {"parts": parts.tolist(), "ends": self._ends(parts)}
+            for label, parts in self._parts.items()
+        }
+        self._keep(folding={"time": time.tolist(), "rows": folding})
 
     @staticmethod
     def _taken_apart(f) -> np.ndarray:
@@ -98,24 +112,30 @@ class FilterFold(CurveWidget):
         """Angles in the window, degrees."""
         return angle + speed * self._time + acceleration * self._time**2 / 2
 
+    def _ends(self, parts) -> dict[str, list[float]]:
+        """Ends of the axes for a row's parts."""
+        drawn = np.concatenate([parts.sum(0), parts.ravel()])
+        room = 0.08 * np.ptp(drawn)
+        most = 0.0
+        for signs in np.eye(3):
+            window = self._window(*(signs * (_ANGLE, _SPEED, _ACCELERATION)))
+            answers = parts @ np.deg2rad(window)
+            most = max(most, *np.abs(answers), abs(answers.sum()))
+        return {
+            "least weight": [float(drawn.min() - room)],
+            "most weight": [float(drawn.max() + room)],
+            "least answer": [float(-1.5 * 1.1 * most)],
+            "most answer": [float(1.5 * 1.1 * most)],
+        }
+
     def _curves(self, row, fold, angle, speed, acceleration) -> dict:
         parts = self._parts[row]
-        f = parts.sum(0)
-        folded = fold / 100 * parts
         window = self._window(angle, speed, acceleration)
         answers = parts @ np.deg2rad(window)
-        drawn = np.concatenate([f, parts.ravel()])
-        room = 0.08 * np.ptp(drawn)
-        ends = [self._window(*(s * top for s, top in zip(signs, (_ANGLE, _SPEED, _ACCELERATION))))
-                for signs in np.eye(3)]  # fmt: skip
-        most = 1.1 * np.abs([[*(parts @ np.deg2rad(q)), f @ np.deg2rad(q)] for q in ends]).max()
         return {
-            "left": f - folded.sum(0),
-            **dict(zip(_PARTS, folded)),
+            "left": (1 - fold / 100) * parts.sum(0),
+            **dict(zip(_PARTS, fold / 100 * parts)),
             "window": window,
             "answers": np.append(answers, answers.sum()),
-            "least weight": drawn.min() - room,
-            "most weight": drawn.max() + room,
-            "least answer": -1.5 * most,
-            "most answer": 1.5 * most,
+            **self._ends(parts),
         }

@@ -7,7 +7,7 @@ import pytest
 from widget_pages import NEXT_FRAME, PATHS, opened, settings
 
 from ddlib.simulation import LOG_STEP
-from ddlib.widgets.fold import FilterFold
+from workshop.chapters.widgets.fold import FilterFold
 
 S = np.arange(-7, 8)
 ROUGH = 10 * np.random.default_rng(2).normal(size=15)
@@ -23,7 +23,7 @@ def widget():
 def test_truths_of_any_state(widget):
     for values in settings(widget, 40, seed=1):
         f, x = ROWS[values["row"]], 0.01 * S
-        shown = widget.interpolate(**values)
+        shown = widget.curves_at(**values)
         size = np.abs(f).max()
         part = values["fold"] / 100
         np.testing.assert_allclose(
@@ -45,14 +45,14 @@ def test_a_line_hears_speed_alone_and_a_parabola_acceleration_alone(widget):
     still = {"angle": 0, "speed": 0, "acceleration": 0}
     for row, motion, part in (("line", "speed", 2), ("parabola", "acceleration", 1)):
         for moved, most in (("angle", 5), ("speed", 50), ("acceleration", 1000)):
-            shown = widget.interpolate(**{**still, "row": row, moved: most})
+            shown = widget.curves_at(**{**still, "row": row, moved: most})
             heard = np.abs(shown["answers"]) > 0.01 * shown["most answer"]
             assert heard.tolist() == [moved == motion and k in (part, 3) for k in range(4)]
 
 
 def test_all_answers_stay_on_the_chart(widget):
     for values in settings(widget, 40, seed=3):
-        shown = widget.interpolate(**values)
+        shown = widget.curves_at(**values)
         if sum(abs(values[name]) > 0 for name in ("angle", "speed", "acceleration")) == 1:
             assert np.abs(shown["answers"]).max() <= shown["most answer"][0]
 

@@ -1,1 +1,0 @@
-"""What a page shows without a kernel: values computed beforehand, compressed, and a still."""
