@@ -30,10 +30,14 @@ from pathlib import Path
 
 import nbformat
 from dd_lessons import chapters
-from dd_reader import FOLDED, has_script
+from dd_reader import CHANGE_THIS, FOLDED, has_script
+from handles import handles
+from solved import exercises
 
 ROOT = Path(__file__).parents[2]
 PAGE = Path(__file__).with_name("live_page")  # what the page itself runs
+sys.path.append(str(PAGE))
+from names import names  # noqa: E402
 BUILD = ROOT / "_build"
 VERSION = "314.0.3"
 TARBALL = "sK40My6m8tmBUYtYH9au9rXUeh9x0wfahtHdOlGmJxZDsKBGKtP6KznyFB2+u/klbQTdDionR0uaVd176zVQzQ=="
@@ -246,12 +250,25 @@ def needs(source: str) -> str:
 
 
 def live_cells(notebook) -> list[dict]:
-    """The cells of a notebook that a reader of the page can run, in order."""
-    return [
-        {"id": cell.id, "kind": kind(cell), "source": cell.source, "needs": needs(cell.source)}
-        for cell in notebook.cells
-        if cell.cell_type == "code" and kind(cell)
-    ]
+    """The cells of a notebook that a reader of the page can run, in order.
+
+    With the names that each takes and gives, the handles of *Change this*, and the solution of an
+    exercise.
+    """
+    code = [cell for cell in notebook.cells if cell.cell_type == "code" and kind(cell)]
+    found, imported = [], set()
+    for cell in code:
+        told = names(cell.source, imported)
+        imported = (imported - told.writes - told.perhaps) | told.imports
+        one = {"id": cell.id, "kind": kind(cell), "source": cell.source, "needs": needs(cell.source)}
+        one["names"] = told.told()
+        if CHANGE_THIS in cell.metadata.get("tags", ()):
+            one["handles"] = [handle._asdict() for handle in handles(cell.source)]
+        found.append(one)
+    answers = [one for one in found if one["kind"] == "answer"]
+    for one, exercise in zip(answers, exercises(notebook)):
+        one["solution"] = exercise.solution
+    return found
 
 
 def live_page(text: str, notebook, page: str, megabytes: list[int]) -> str:
@@ -273,6 +290,7 @@ def live_page(text: str, notebook, page: str, megabytes: list[int]) -> str:
     island = json.dumps(told).replace("</", "<\\/")
     added = (
         '<link rel="stylesheet" href="../_static/live/live.css">'
+        '<script defer src="../_static/live/follow.js"></script>'
         '<script defer src="../_static/live/live.js"></script>'
         f'<script type="application/json" id="live-page">{island}</script>'
     )

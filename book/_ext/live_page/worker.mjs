@@ -19,7 +19,7 @@ self.fetch = async (...request) => {
   return new Response(answer.body.pipeThrough(count), { headers, status });
 };
 
-const MODULES = ["absent.py", "kernel.py"];
+const MODULES = ["absent.py", "names.py", "kernel.py"];
 let python, kernel, packages;
 
 async function file(path) {
@@ -46,7 +46,29 @@ async function start(data) {
   );
   python.runPython("import sys; sys.path.insert(0, '/book'); import absent; absent.start()");
   kernel = python.pyimport("kernel");
+  kernel.start(python.runPython(PAUSE));
 }
+
+// While a training runs, its progress bar looks up: a page that is isolated from other sites shares
+// memory with the worker, and else a browser with JSPI lets the worker hear its messages meanwhile.
+let wanted = false;
+self.stopWanted = () => {
+  const stop = wanted;
+  wanted = false;
+  return stop;
+};
+const PAUSE = `
+import asyncio, js
+from pyodide.ffi import can_run_sync, run_sync
+
+def pause():
+    if can_run_sync():
+        run_sync(asyncio.sleep(0))
+        if js.stopWanted():
+            raise KeyboardInterrupt("Stopped.")
+
+pause
+`;
 
 const quiet = { messageCallback() {}, errorCallback() {} };
 
@@ -65,14 +87,24 @@ async function get(module) {
   return true;
 }
 
-self.onmessage = async ({ data: { start: data, run, source } }) => {
+self.onmessage = async ({ data: { start: data, interrupts, stop, run, source, above, how } }) => {
   try {
     if (data) {
       await start(data);
+      if (interrupts) python.setInterruptBuffer(interrupts);
       return tell({ ready: true });
     }
+    if (stop) {
+      wanted = true;
+      return;
+    }
+    wanted = false;
     const began = performance.now();
-    const ok = await kernel.run(source, run, (kind, text) => tell({ run, kind, text }), get);
+    const show = (kind, text) => tell({ run, kind, text });
+    const ok = await kernel.run.callKwargs(source, run, show, get, {
+      above: python.toPy(above ?? null),
+      ...how,
+    });
     tell({ run, done: true, ok, seconds: (performance.now() - began) / 1000 });
   } catch (error) {
     tell({ failed: `${error.message ?? error}` });
