@@ -268,6 +268,7 @@ def live_cells(notebook) -> list[dict]:
     answers = [one for one in found if one["kind"] == "answer"]
     for one, exercise in zip(answers, exercises(notebook)):
         one["solution"] = exercise.solution
+        one["solves"] = names(f"{exercise.solution}\n{exercise.check}", imported).told()
     return found
 
 

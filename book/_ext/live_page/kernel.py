@@ -173,9 +173,9 @@ class Progress:
         if self.emit is None or now - Progress.last < 0.1:
             return
         Progress.last = now
+        heard = bool(Progress.pause())
         if self.total:
-            Progress.emit("progress", json.dumps([self.n / self.total, self.desc]))
-        Progress.pause()
+            Progress.emit("progress", json.dumps([self.n / self.total, self.desc, heard]))
 
     def __enter__(self):
         return self

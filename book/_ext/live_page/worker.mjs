@@ -65,7 +65,8 @@ def pause():
     if can_run_sync():
         run_sync(asyncio.sleep(0))
         if js.stopWanted():
-            raise KeyboardInterrupt("Stopped.")
+            raise KeyboardInterrupt
+        return True
 
 pause
 `;
@@ -99,6 +100,7 @@ self.onmessage = async ({ data: { start: data, interrupts, stop, run, source, ab
       return;
     }
     wanted = false;
+    tell({ began: run });
     const began = performance.now();
     const show = (kind, text) => tell({ run, kind, text });
     const ok = await kernel.run.callKwargs(source, run, show, get, {
