@@ -58,10 +58,12 @@
   const stop = button("Stop", "Stop: what runs is ended, Python starts afresh", () => stopped());
   const reset = button("Reset", "Reset: code and output as in the book", () => asBuilt());
   const changes = Object.keys(recall()).length;
+  const lacks = cells.filter((c) => c.needs).map((c) => c.needs);
   status.textContent =
     `Change the code of this page and run it, here in the browser. A click loads Python from ` +
     `this site: ${megabytes[0]} MB, up to ${megabytes[1]} MB with all that cells import. The first ` +
     `run takes half a minute more than the page says.` +
+    (lacks.length ? ` PyTorch's ${lacks.join(", ")} are not in a page: the notebook has them.` : "") +
     (changes ? " What you changed last time is kept." : "");
   bar.append(begin, status, progress);
   // Beside the sections of the page, not in one: so it stays in view down to the last cell.
@@ -88,7 +90,7 @@
     if (caption) caption.before(cell.told);
     else cell.el.append(cell.told);
     if (cell.needs) {
-      cell.told.append(note("torch"));
+      cell.told.append(note("torch", cell.needs));
       return;
     }
     const tools = make("div", { class: "live-tools" });
@@ -160,14 +162,19 @@
 
   // What the book shows makes room for what the reader's code gives: two figures may share an id.
   function fresh(cell) {
-    for (const el of cell.widget ? [] : cell.built) {
+    for (const el of cell.built) {
       const mark = new Comment();
       el.replaceWith(mark);
       cell.away.push([mark, el]);
     }
-    cell.built = cell.widget ? cell.built : [];
-    cell.told.replaceChildren();
+    cell.built = [];
+    emptied(cell);
     cell.error = false;
+  }
+
+  function emptied(cell) {
+    for (const each of hosts) each.drop(cell.told);
+    cell.told.replaceChildren();
   }
 
   function restore(cell) {
@@ -179,7 +186,8 @@
     if (remember() && !confirm("Drop your changes and show code and output of the book?")) return;
     for (const cell of cells) {
       restore(cell);
-      cell.told.replaceChildren(...(cell.needs ? [note("torch")] : []));
+      emptied(cell);
+      cell.told.append(...(cell.needs ? [note("torch", cell.needs)] : []));
       if (cell.time) cell.time.textContent = "";
       if (!cell.area) continue;
       cell.area.value = cell.source;
@@ -193,10 +201,10 @@
   function note(kind, text = "") {
     const link = make("a", { href: notebook, download: "" }, "download the notebook");
     const said = {
-      torch: ["This cell needs PyTorch, not available in the page: ", link, "."],
+      torch: [`This cell needs ${text}, not available in the page: `, link, "."],
+      twin: ["PyTorch is not available in a page: a small stand-in computes the same with numpy."],
       above: [`This cell needs “${text}” of a cell above that needs PyTorch: `, link, "."],
       after: ["A cell above needs PyTorch and did not run; this may follow: ", link, "."],
-      widget: ["The figure to handle is the book's: it does not follow your changes here."],
       hint: [`Is “${text}” made in a cell above? “Run to here” runs them all.`],
     }[kind];
     return make("p", { class: "live-note" }, ...said);
@@ -232,7 +240,7 @@
 
   function show(cell, kind, text) {
     const place = cell.told;
-    if (kind === "again") return place.replaceChildren();
+    if (kind === "again") return emptied(cell);
     if (kind === "text" || kind === "warning" || kind === "error") {
       const last = place.lastElementChild;
       if (last?.classList.contains(`live-${kind}`)) last.firstChild.append(text);
@@ -249,13 +257,32 @@
       el.classList.add("output", "tex2jax_process");
       place.append(el);
       window.MathJax?.typesetPromise?.([el]);
-    } else {
-      if (kind === "widget") {
-        cell.widget = true;
-        restore(cell);
-      }
-      place.append(note(kind, text));
-    }
+    } else if (kind === "widget") {
+      const el = make("div", { class: "output" });
+      place.append(el);
+      withHost(() => host.mount(Number(text), el));
+    } else place.append(note(kind, text));
+  }
+
+  // --- widgets: their script comes with the first one ---
+  const hosts = []; // one for each worker that had any
+  let host, hosting;
+  function withHost(act) {
+    hosting ??= import(new URL("widgets.mjs", home)).then((module) => {
+      const mine = worker;
+      const post = (message, buffers) => mine.postMessage({ widget: JSON.stringify(message), buffers });
+      host = module.host(post, () => Boolean(running));
+      hosts.push(host);
+    });
+    hosting = hosting
+      .then(() => void (host && act()))
+      .catch((error) => say(`The figure to handle did not come: ${error.message}.`));
+  }
+  function ended() {
+    worker?.terminate();
+    worker = undefined;
+    host?.end();
+    host = hosting = undefined;
   }
 
   // --- the worker, and what is to be run ---
@@ -290,7 +317,8 @@
   }
 
   function heard(message) {
-    if (message.bytes) {
+    if (message.widget) withHost(() => host.heard(message.widget, message.buffers));
+    else if (message.bytes) {
       progress.hidden = ready && !running;
       advance(message.bytes);
     } else if (message.ready) {
@@ -304,8 +332,7 @@
       waiting = [];
       running?.el.classList.remove("live-running");
       running = undefined;
-      worker.terminate();
-      worker = undefined; // the next run tries again
+      ended(); // the next run tries again
       document.documentElement.dataset.live = "idle";
       say(`Python ${ready ? "broke off" : "did not start"}: ${message.failed}.`);
     } else if (message.done) finish(message);
@@ -324,6 +351,7 @@
     running.el.classList.add("live-running");
     if (running.time) running.time.textContent = "running …";
     say(`Running ${running.name} of ${cells.length} …`);
+    host?.flush();
     worker.postMessage({ run: running.name, source: running.area?.value ?? running.source });
   }
 
@@ -353,7 +381,7 @@
 
   // A worker that computes hears nothing: it is ended, and another one takes its place.
   function stopped(told = "Stopped. Python starts afresh: “Run to here” runs the cells above, too.") {
-    worker?.terminate();
+    ended();
     running?.el.classList.remove("live-running");
     if (running?.time) running.time.textContent = "stopped";
     running = undefined;

@@ -20,6 +20,7 @@ self.fetch = async (...request) => {
 };
 
 const MODULES = ["absent.py", "kernel.py"];
+const INSTEAD = ["torch", "anywidget", "ipywidgets", "IPython"]; // modules of this site that stand in for others
 let python, kernel, packages;
 
 async function file(path) {
@@ -46,6 +47,7 @@ async function start(data) {
   );
   python.runPython("import sys; sys.path.insert(0, '/book'); import absent; absent.start()");
   kernel = python.pyimport("kernel");
+  kernel.page = (text, buffers) => tell({ widget: JSON.parse(text), buffers: buffers.toJs() });
 }
 
 const quiet = { messageCallback() {}, errorCallback() {} };
@@ -55,6 +57,10 @@ const asked = new Set();
 async function get(module) {
   if (asked.has(module)) return false;
   asked.add(module);
+  if (INSTEAD.includes(module)) {
+    python.FS.writeFile(`/book/${module}.py`, new Uint8Array(await file(`instead/${module}.py`)));
+    return true;
+  }
   if (module === "workshop") {
     python.unpackArchive(await file("workshop.zip"), "zip", { extractDir: "/book" });
     return true;
@@ -65,8 +71,16 @@ async function get(module) {
   return true;
 }
 
-self.onmessage = async ({ data: { start: data, run, source } }) => {
+// One message after the other, also where Python waits for a package.
+let last = Promise.resolve();
+self.onmessage = ({ data }) => (last = last.then(() => act(data)));
+
+async function act({ start: data, run, source, widget, buffers }) {
   try {
+    if (widget) {
+      const names = JSON.parse(kernel.heard(widget, buffers));
+      return names.length && tell({ kind: "moved", names });
+    }
     if (data) {
       await start(data);
       return tell({ ready: true });
@@ -77,4 +91,4 @@ self.onmessage = async ({ data: { start: data, run, source } }) => {
   } catch (error) {
     tell({ failed: `${error.message ?? error}` });
   }
-};
+}
