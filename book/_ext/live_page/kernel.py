@@ -211,6 +211,7 @@ def _tell(error, tree, name: str, emit) -> None:
     for lost in _defined(tree) - {"mine"}:
         blocked.add(lost)
         space.pop(lost, None)  # half of it may be there
+    blocked.update({"torch"} - space.keys())
 
 
 def _twin(tree) -> bool:
