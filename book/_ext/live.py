@@ -33,6 +33,7 @@ from pathlib import Path
 import nbformat
 from dd_lessons import chapters
 from dd_reader import FOLDED, has_script
+from offers import FIRST as FIRST_PAGE, offer
 
 ROOT = Path(__file__).parents[2]
 PAGE = Path(__file__).with_name("live_page")  # what the page itself runs
@@ -219,8 +220,8 @@ def runtime(root: Path, mirror: str, kept: Path, out: Path) -> dict[str, int]:
     packages["ddlib"] = wheel("ddlib", version, ours, depends, pyodide)
     packages["ddlib-widgets"] = wheel("ddlib-widgets", version, widgets, ["traitlets"], pyodide)
     packages["ddlib-widgets"]["imports"] = [WIDGETS.replace("/", ".")]
-    workshop = sources(root / "book" / "workshop", root / "book")
-    (out / "workshop.zip").write_bytes(zipped(workshop))
+    rooms = [sources(root / "book" / name, root / "book") for name in ("workshop", "beyond")]
+    (out / "workshop.zip").write_bytes(zipped(rooms[0] | rooms[1]))
     (pyodide / LOCK).write_text(json.dumps({**lock, "packages": packages}), encoding="utf-8")
     shutil.copytree(PAGE, out, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
     at_first = [*CORE, LOCK, *(packages[name]["file_name"] for name in FIRST)]
@@ -338,6 +339,8 @@ def write(root: Path, site: Path, mirror: str, kept: Path, out: Path) -> list[st
             for name in DATA.findall("\n".join(c.source for c in notebook.cells)):
                 (folder / "data").mkdir(exist_ok=True)
                 shutil.copyfile(root / "book" / "data" / name, folder / "data" / name)
+        if (part / FIRST_PAGE).is_file():
+            offer(part)
         shutil.rmtree(out, ignore_errors=True)
         part.rename(out)
     finally:

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
-OURS = ("ddlib", "workshop")
+OURS = ("ddlib", "workshop", "beyond")
 ABSENT = ("yaml", "joblib", "sklearn")
 """What ours may import and then not use; only in a cell itself is it an error to import it."""
 

@@ -61,7 +61,7 @@ async function get(module) {
     python.FS.writeFile(`/book/${module}.py`, new Uint8Array(await file(`instead/${module}.py`)));
     return true;
   }
-  if (module === "workshop") {
+  if (module === "workshop" || module === "beyond") {
     python.unpackArchive(await file("workshop.zip"), "zip", { extractDir: "/book" });
     return true;
   }
