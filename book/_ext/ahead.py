@@ -32,7 +32,7 @@ PRELOADED = (
     "matplotlib.figure",
     "sympy",
     "torch",
-    "workshop.report._measures",
+    "workshop.report.measures",
     "workshop.report.evidence.wall",
     "ddlib.figures.style",
     "ddlib.widgets.base",

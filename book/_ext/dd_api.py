@@ -15,10 +15,11 @@ from sphinx import addnodes
 from sphinx.pycode import ModuleAnalyzer
 
 SHOWN = (
-    "workshop.report._measures",
-    "workshop.beyond._measures",
+    "workshop.report.measures",
     "workshop.chapters",
     "workshop.report.evidence.expressions",
+    "beyond.measures",
+    "beyond.chapters",
 )
 """Packages and modules whose source has pages."""
 
@@ -80,7 +81,7 @@ def shorten_values(app, doctree):
 def leave_sources(app, env, docnames):
     """Tell `sphinx.ext.viewcode` that there is no source of any other module."""
     root = Path(app.srcdir)
-    tops = (root, "ddlib"), (root / "book", "workshop")
+    tops = (root, "ddlib"), (root / "book", "workshop"), (root / "book", "beyond")
     paths = [p.relative_to(top) for top, name in tops for p in top.glob(f"{name}/**/*.py")]
     names = (".".join(path.with_suffix("").parts).removesuffix(".__init__") for path in paths)
     known = getattr(env, "_viewcode_modules", {})

@@ -83,7 +83,7 @@ def _numbers(node: ast.AST, label: str = "") -> list[tuple[str, ast.AST]]:
         parts = [(f"[{k}]", part) for k, part in enumerate(node.elts)]
     elif isinstance(node, ast.Call):
         only = len(node.args) == 1 and not node.keywords
-        only = only or len(list(filter(_is_number, node.args))) == 1 and not node.keywords
+        only = only or (len(list(filter(_is_number, node.args))) == 1 and not node.keywords)
         parts = [("" if only else f", number {k}", a) for k, a in enumerate(node.args, 1)]
         parts += [(f", {word.arg}", word.value) for word in node.keywords]
     else:
@@ -154,9 +154,7 @@ def _handle(target, name, label, node, words, place, count) -> Handle:
     low, high, step = (
         int(round(end)) if whole else round(end, digits) for end in (low, high, step)
     )
-    return Handle(
-        target, name, f"{name}{label}", unit, place, count, value, low, high, step, whole
-    )
+    return Handle(target, name, f"{name}{label}", unit, place, count, value, low, high, step, whole)
 
 
 def _usual(name: str, value: float, unit: str) -> tuple[float, float]:

@@ -18,6 +18,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))  # for the workshop of the bo
 
 from dd_failures import UNEXECUTED
 
+import beyond
 import ddlib
 import workshop
 
@@ -44,7 +45,7 @@ def prepare():
     from jupyter_book import sphinx
     from jupyter_book.cli.main import main
 
-    rooms = (ddlib.__path__, "ddlib."), (workshop.__path__, "workshop.")
+    rooms = [(room.__path__, f"{room.__name__}.") for room in (ddlib, workshop, beyond)]
     documented = [module.name for room in rooms for module in pkgutil.walk_packages(*room)]
     for name in (*EXTENSIONS, *documented):
         try:

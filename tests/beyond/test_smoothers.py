@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from beyond.studies.checks import smoothers
 from ddlib.effects import IDEAL
 from ddlib.identification import RIGID
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, split
-from workshop.beyond.studies.checks import smoothers
 from workshop.report import results
 
 

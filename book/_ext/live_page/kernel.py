@@ -21,7 +21,6 @@ import traceback
 import types
 from contextlib import redirect_stderr, redirect_stdout, suppress
 
-from absent import Inert
 from names import Names, names
 
 os.environ["MPLBACKEND"] = "Agg"
@@ -32,6 +31,8 @@ space = dict(BARE)
 made: dict[str, dict] = {}  # what each cell gave to names when it ran last
 known: dict[str, Names] = {}
 blocked: set[str] = set()  # names that a cell would have made which cannot run here
+emitting = None  # what shows something below the cell that runs
+page = None  # `page(text, buffers)` tells the widgets of the page something; the worker sets it
 
 
 class Stream:
@@ -76,6 +77,8 @@ async def run(source: str, name: str, emit, fetch, above=None, keep=True, quiet=
         emit("syntax", json.dumps([getattr(error, "lineno", None), getattr(error, "msg", "")]))
         return False
     await _imports(tree, fetch)
+    if _twin(tree) and sys.modules.get("torch") and not quiet:
+        emit("twin", "")
     found = names(source, {n for n, value in space.items() if isinstance(value, types.ModuleType)})
     before = dict(space)
     altered = found.changes.union(*(of for one in known.values() for of in one.alters.values()))
@@ -210,9 +213,9 @@ async def _until_it_runs(tree, name: str, emit, fetch) -> bool:
             _execute(tree, name, emit)
             blocked.difference_update(_defined(tree))
             return True
-        except ModuleNotFoundError as error:
+        except ImportError as error:
             # A function imported something as it ran: it gets it, and the cell starts again.
-            package = (error.name or "").partition(".")[0]
+            package = _missing(error)
             if package not in tried and await _got(package, fetch):
                 tried.add(package)
                 emit("again", "")
@@ -224,8 +227,17 @@ async def _until_it_runs(tree, name: str, emit, fetch) -> bool:
             return False
 
 
+def _missing(error: ImportError) -> str:
+    """What is not there; ours say so of PyTorch in their own words."""
+    absent = isinstance(error, ModuleNotFoundError) or error.name == "torch"
+    return (error.name or "") if absent else ""
+
+
 async def _got(package: str, fetch) -> bool:
-    got = bool(package) and await fetch(package)
+    """Get what is not there: a part of a package that comes by itself, or all of it."""
+    got = bool(package) and (
+        await fetch(package) or ("." in package and await fetch(package.partition(".")[0]))
+    )
     importlib.invalidate_caches()
     return got
 
@@ -240,8 +252,8 @@ async def _imports(tree, fetch) -> None:
         for _ in range(20):
             try:
                 return step()
-            except ModuleNotFoundError as error:
-                if not await _got((error.name or "").partition(".")[0], fetch):
+            except ImportError as error:
+                if not await _got(_missing(error), fetch):
                     return None
             except Exception:
                 return None
@@ -257,6 +269,8 @@ async def _imports(tree, fetch) -> None:
 def _execute(tree, name: str, emit) -> None:
     body = list(tree.body)
     last = body.pop() if body and isinstance(body[-1], ast.Expr) else None
+    global emitting
+    emitting = emit
     out, err = Stream(emit, "text"), Stream(emit, "warning")
     with redirect_stdout(out), redirect_stderr(err):
         try:
@@ -278,8 +292,9 @@ def _execute(tree, name: str, emit) -> None:
 
 def show(value, emit) -> None:
     """A value as a notebook would show it."""
-    if isinstance(value, Inert):
-        return emit("widget", "")
+    widgets = sys.modules.get("anywidget")
+    if widgets and isinstance(value, widgets.AnyWidget):
+        return emit("widget", str(value.show()))
     for kind in ("html", "svg", "latex", "markdown"):
         told = getattr(value, f"_repr_{kind}_", None)
         text = told() if told and not isinstance(value, type) else None
@@ -290,6 +305,29 @@ def show(value, emit) -> None:
     emit("text", f"{value!r}\n")
 
 
+def display(*values) -> None:
+    """Show values below the cell that runs."""
+    sys.stdout.flush()  # what was printed comes first
+    for value in values:
+        show(value, emitting)
+
+
+def heard(text: str, buffers) -> str:
+    """Take what a widget of the page says; returns the names of the widget if it changed."""
+    told = {"number": json.loads(text)["number"]}
+    out = Stream(lambda _, said: page(json.dumps({**told, "said": said}), []), "text")
+    widget = None
+    with redirect_stdout(out), redirect_stderr(out):
+        try:
+            widget = sys.modules["anywidget"].heard(text, buffers)
+        except Exception as error:
+            out.write(f"{type(error).__name__}: {error}\n")
+    out.flush()
+    page(json.dumps({**told, "applied": True}), [])
+    names = [name for name, value in space.items() if widget is not None and value is widget]
+    return json.dumps(names)
+
+
 def _svg(figure) -> str:
     made = io.StringIO()
     figure.savefig(made, format="svg", bbox_inches="tight")
@@ -298,10 +336,12 @@ def _svg(figure) -> str:
 
 def _tell(error, tree, name: str, emit) -> None:
     """What went wrong, from the cell's own line on; and in plain words what cannot be had here."""
-    if isinstance(error, ModuleNotFoundError) and (error.name or "").partition(".")[0] == "torch":
-        emit("torch", "")
+    if isinstance(error, ImportError) and _missing(error).partition(".")[0] == "torch":
+        emit("torch", "PyTorch")
+    elif lacks := getattr(error, "lacks", ""):
+        emit("torch", lacks)
     elif isinstance(error, NameError) and error.name in blocked:
-        emit("torch" if error.name == "torch" else "above", error.name)
+        emit("above", error.name)
     elif isinstance(error, KeyboardInterrupt):
         sys.last_value = error  # as in a notebook: what a training reached is to be had from it
         emit("stopped", str(error))
@@ -327,6 +367,14 @@ def _tell(error, tree, name: str, emit) -> None:
         blocked.add(lost)
         space.pop(lost, None)  # half of it may be there
     blocked.update({"torch"} - space.keys())
+
+
+def _twin(tree) -> bool:
+    """Whether a cell itself imports what stands in for PyTorch."""
+    steps = [step.body[0] for step in _imports_of(tree)]
+    named = [alias.name for step in steps if isinstance(step, ast.Import) for alias in step.names]
+    named += [step.module or "" for step in steps if isinstance(step, ast.ImportFrom)]
+    return "torch" in {name.partition(".")[0] for name in named}
 
 
 def _imports_of(tree) -> list[ast.Module]:

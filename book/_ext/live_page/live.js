@@ -178,10 +178,12 @@
     heardOf.textContent = "Your work on all pages of this book was erased.";
   }
 
+  const lacks = cells.filter((c) => c.needs).map((c) => c.needs);
   status.textContent =
     `Change the code of this page and run it, here in the browser. A click loads Python from ` +
     `this site: ${megabytes[0]} MB, up to ${megabytes[1]} MB with all that cells import. The first ` +
     `run takes half a minute more than the page says.` +
+    (lacks.length ? ` PyTorch's ${lacks.join(", ")} are not in a page: the notebook has them.` : "") +
     (Object.keys(mine.changes).length ? " What you changed last time is kept." : "");
   bar.append(begin, status, progress);
   if (asked.length) bar.append(own);
@@ -217,7 +219,7 @@
     if (caption) caption.before(cell.told);
     else cell.el.append(cell.told);
     if (cell.needs) {
-      cell.told.append(note("torch"));
+      cell.told.append(note("torch", cell.needs));
       return;
     }
     const tools = make("div", { class: "live-tools" });
@@ -425,12 +427,17 @@
 
   // What the book shows makes room for what the reader's code gives: two figures may share an id.
   function fresh(cell) {
-    for (const el of cell.widget ? [] : cell.built) {
+    for (const el of cell.built) {
       const mark = new Comment();
       el.replaceWith(mark);
       cell.away.push([mark, el]);
     }
-    cell.built = cell.widget ? cell.built : [];
+    cell.built = [];
+    emptied(cell);
+  }
+
+  function emptied(cell) {
+    for (const each of hosts) each.drop(cell.told);
     cell.told.replaceChildren();
   }
 
@@ -444,8 +451,9 @@
     if (!sure && remember() && !confirm(ask)) return;
     for (const cell of cells) {
       restore(cell);
-      cell.told.replaceChildren(...(cell.needs ? [note("torch")] : []));
-      cell.extra?.told.replaceChildren();
+      emptied(cell);
+      cell.told.append(...(cell.needs ? [note("torch", cell.needs)] : []));
+      if (cell.extra) emptied(cell.extra);
       Object.assign(cell, { shown: cell.source, stale: false, failed: false, asked: false });
       Object.assign(cell, { names: cell.asBuilt, prints: undefined, altered: undefined });
       if (cell.time) cell.time.textContent = "";
@@ -464,10 +472,12 @@
   function note(kind, text = "") {
     const link = make("a", { href: notebook, download: "" }, "download the notebook");
     const said = {
-      torch: () => ["This cell needs PyTorch, not available in the page: ", link, "."],
+      torch: () => [`This cell needs ${text}, not available in the page: `, link, "."],
+      twin: () => [
+        "PyTorch is not available in a page: a small stand-in computes the same with numpy.",
+      ],
       above: () => [`This cell needs “${text}” of a cell above that needs PyTorch: `, link, "."],
       after: () => ["A cell above needs PyTorch and did not run; this may follow: ", link, "."],
-      widget: () => ["The figure to handle is the book's: it does not follow your changes here."],
       hint: () => [`Is “${text}” made in a cell above? “Run to here” runs them all.`],
       syntax: () => {
         const [line, why] = JSON.parse(text);
@@ -523,7 +533,7 @@
 
   function show(cell, kind, text) {
     const place = cell.told;
-    if (kind === "again") return place.replaceChildren();
+    if (kind === "again") return emptied(cell);
     if (kind === "text" || kind === "warning" || kind === "error") {
       const last = place.lastElementChild;
       if (last?.classList.contains(`live-${kind}`)) last.firstChild.append(text);
@@ -546,13 +556,33 @@
       cell.gauge.value = share;
       if (!cell.gauge.isConnected) cell.time.after(cell.gauge);
       cell.time.textContent = `running: ${what ? `${what}, ` : ""}${Math.floor(100 * share)} %`;
-    } else {
-      if (kind === "widget") {
-        cell.widget = true;
-        restore(cell);
-      }
-      place.append(note(kind, text));
-    }
+    } else if (kind === "widget") {
+      cell.widget = true;
+      const el = make("div", { class: "output" });
+      place.append(el);
+      withHost(() => host.mount(Number(text), el));
+    } else place.append(note(kind, text));
+  }
+
+  // --- widgets: their script comes with the first one ---
+  const hosts = []; // one for each worker that had any
+  let host, hosting;
+  function withHost(act) {
+    hosting ??= import(new URL("widgets.mjs", home)).then((module) => {
+      const mine = worker;
+      const post = (message, buffers) => mine.postMessage({ widget: JSON.stringify(message), buffers });
+      host = module.host(post, () => Boolean(running));
+      hosts.push(host);
+    });
+    hosting = hosting
+      .then(() => void (host && act()))
+      .catch((error) => say(`The figure to handle did not come: ${error.message}.`));
+  }
+  function ended() {
+    worker?.terminate();
+    worker = undefined;
+    host?.end();
+    host = hosting = undefined;
   }
 
   // --- the worker, and what is to be run ---
@@ -601,7 +631,8 @@
   }
 
   function heard(message) {
-    if (message.bytes) {
+    if (message.widget) withHost(() => host.heard(message.widget, message.buffers));
+    else if (message.bytes) {
       progress.hidden = ready && !running;
       advance(message.bytes);
     } else if (message.ready) {
@@ -612,6 +643,7 @@
       next();
     } else if (message.failed) lost(message.failed);
     else if (message.began) clearTimeout(asking);
+    else if (message.kind === "moved") moved(message.names);
     else if (message.done) finish(message);
     else if (running && message.run === running.name) {
       const { kind, text } = message;
@@ -626,13 +658,27 @@
     }
   }
 
+  // A figure was handled, and Python has its names: cells that take them follow.
+  function moved(names) {
+    const graph = follow.graph(cells);
+    for (const name of names)
+      for (const cell of cells) {
+        const { names: own } = cell;
+        if (!own.writes?.includes(name) && !own.perhaps?.includes(name)) continue;
+        for (const k of follow.readers(cells, graph, cell.place, new Set([name])))
+          if (cells[k].kind !== "answer" && cells[k] !== running) cells[k].stale = true;
+      }
+    mark();
+    clearTimeout(timer);
+    if (react.checked) timer = setTimeout(followUp, 500);
+  }
+
   // The worker is gone: the page goes on, and the next run has another one.
   function lost(why) {
     clearTimeout(asking);
     progress.hidden = true;
     drop();
-    worker?.terminate();
-    worker = undefined;
+    ended();
     if (running) {
       running.told.append(note("lost", why));
       released(running);
@@ -690,7 +736,7 @@
     waiting.delete(running);
     const cell = running;
     cell.sent = text(cell);
-    cell.quiet = !cell.asked && !cell.stale && !cell.failed && cell.sent === cell.shown;
+    cell.quiet = !cell.asked && !cell.stale && !cell.failed && cell.sent === cell.shown && !cell.widget;
     cell.failed = cell.cancelled = cell.stopping = false;
     cell.news = undefined;
     cell.said = "";
@@ -698,11 +744,13 @@
     cell.el.classList.add("live-running");
     if (cell.time && !cell.quiet) cell.time.textContent = "running …";
     say(`Running ${cell.name} of ${cells.length} …`);
+    host?.flush();
     const above = cells.slice(0, cell.place).filter((c) => c.turn).map((c) => c.name);
     const how = { keep: !cell.extra, quiet: cell.quiet };
     worker.postMessage({ run: cell.name, source: cell.sent, above, how });
+    if (interrupts) interrupts[0] = 0;
     const mine = worker; // an idle worker answers at once: or it is no more
-    asking = setTimeout(() => mine === worker && lost("it does not answer"), 15_000);
+    asking = setTimeout(() => mine === worker && lost("it does not answer"), 30_000);
   }
 
   function finish({ seconds, ok }) {
@@ -806,7 +854,7 @@
   }
 
   function restart(told = "") {
-    worker?.terminate();
+    ended();
     clearTimeout(asking);
     if (running) released(running, told);
     running = undefined;

@@ -20,6 +20,8 @@ self.fetch = async (...request) => {
 };
 
 const MODULES = ["absent.py", "names.py", "kernel.py"];
+// Modules of this site that stand in for others.
+const INSTEAD = ["torch", "anywidget", "ipywidgets", "IPython"];
 let python, kernel, packages;
 
 async function file(path) {
@@ -47,6 +49,7 @@ async function start(data) {
   python.runPython("import sys; sys.path.insert(0, '/book'); import absent; absent.start()");
   kernel = python.pyimport("kernel");
   kernel.start(python.runPython(PAUSE));
+  kernel.page = (text, buffers) => tell({ widget: JSON.parse(text), buffers: buffers.toJs() });
 }
 
 // While a training runs, its progress bar looks up: a page that is isolated from other sites shares
@@ -78,7 +81,11 @@ const asked = new Set();
 async function get(module) {
   if (asked.has(module)) return false;
   asked.add(module);
-  if (module === "workshop") {
+  if (INSTEAD.includes(module)) {
+    python.FS.writeFile(`/book/${module}.py`, new Uint8Array(await file(`instead/${module}.py`)));
+    return true;
+  }
+  if (module === "workshop" || module === "beyond") {
     python.unpackArchive(await file("workshop.zip"), "zip", { extractDir: "/book" });
     return true;
   }
@@ -88,16 +95,23 @@ async function get(module) {
   return true;
 }
 
-self.onmessage = async ({ data: { start: data, interrupts, stop, run, source, above, how } }) => {
+// One message after the other, also where Python waits for a package.
+let last = Promise.resolve();
+self.onmessage = ({ data }) => {
+  if (data.stop) wanted = true;
+  else last = last.then(() => act(data));
+};
+
+async function act({ start: data, interrupts, run, source, above, how, widget, buffers }) {
   try {
+    if (widget) {
+      const names = JSON.parse(kernel.heard(widget, buffers));
+      return names.length && tell({ kind: "moved", names });
+    }
     if (data) {
       await start(data);
       if (interrupts) python.setInterruptBuffer(interrupts);
       return tell({ ready: true });
-    }
-    if (stop) {
-      wanted = true;
-      return;
     }
     wanted = false;
     tell({ began: run });
@@ -111,4 +125,4 @@ self.onmessage = async ({ data: { start: data, interrupts, stop, run, source, ab
   } catch (error) {
     tell({ failed: `${error.message ?? error}` });
   }
-};
+}
