@@ -388,6 +388,8 @@ def _quoted() -> None:
         quote(f"rivals-{short}", np.median(_errors(name)))
     late = smoothed("late sensor")[study["own"]]
     quote("rivals-late-applied", np.median(late["applied"]["trajectory 6"]))
+    free = smoothed("late sensor")["Butterworth filter and a delay"]
+    stated("rivals-delay-found", {delay for _, delay in free["setting"]} == {2})  # samples: 20 ms
     won = over("Lagrangian network") < 1
     quote("rivals-lagrangian-won", int(won.sum()))
     quote("rivals-lagrangian-days", len(won))
