@@ -135,7 +135,7 @@ def _handle(target, name, label, node, words, place, count) -> Handle:
     low, high = _usual(name, value, unit)
     step = _step(value)
     named = any(word in name for word in WINDOWS)
-    if odd := whole and value % 2 == 1 and (named or re.search(r"\bodd\b", words) is not None):
+    if whole and value % 2 == 1 and (named or re.search(r"\bodd\b", words) is not None):
         low, step = 3, 2
     if found := RANGE.search(words):
         low, high = map(float, found.groups())
@@ -151,9 +151,7 @@ def _handle(target, name, label, node, words, place, count) -> Handle:
     low = value - step * math.floor(below + 1e-9)  # so that the value is on a step
     high = value + step * math.floor(1e-9 - above)
     digits = 0 if whole else max(1, -math.floor(math.log10(step)))
-    low, high, step = (
-        int(round(end)) if whole else round(end, digits) for end in (low, high, step)
-    )
+    low, high, step = (round(end) if whole else round(end, digits) for end in (low, high, step))
     return Handle(target, name, f"{name}{label}", unit, place, count, value, low, high, step, whole)
 
 

@@ -1,4 +1,4 @@
-"""*Run this page*: which names a cell takes from the cells above, and which it gives to those below.
+"""*Run this page*: the names that a cell takes from the cells above, and gives to those below.
 
 By its code alone, before it runs; rather a name too many than one too few.
 """
