@@ -127,7 +127,7 @@ grade: $(READY)  ## a table of returned notebooks: FOLDER=returned, at most MINU
 MIRROR ?=
 live: $(READY)  ## pages that run in the browser, in _build/live; MIRROR=: whence packages come
 	@$(BIN)/python book/_ext/build.py
-	@$(BIN)/python book/_ext/live.py --mirror "$(MIRROR)"
+	@$(WORKSHOP) book/_ext/live.py --mirror "$(MIRROR)"
 
 pdf: book  ## the walk and the evidence as PDFs, in _build/pdf (needs Chromium)
 	@$(BIN)/python book/_ext/pdf.py

@@ -13,6 +13,7 @@ import argparse
 import ast
 import base64
 import hashlib
+import importlib.util
 import io
 import json
 import math
@@ -25,16 +26,22 @@ import tarfile
 import urllib.error
 import urllib.request
 import zipfile
+from functools import cache
 from importlib.metadata import distribution
 from pathlib import Path
 
 import nbformat
 from dd_lessons import chapters
-from dd_reader import FOLDED, has_script
+from dd_reader import CHANGE_THIS, FOLDED, has_script
+from handles import handles
 from offers import FIRST as FIRST_PAGE, offer
+from solved import exercises
 
 ROOT = Path(__file__).parents[2]
 PAGE = Path(__file__).with_name("live_page")  # what the page itself runs
+sys.path.append(str(PAGE))
+from names import names  # noqa: E402
+
 BUILD = ROOT / "_build"
 VERSION = "314.0.3"
 TARBALL = "sK40My6m8tmBUYtYH9au9rXUeh9x0wfahtHdOlGmJxZDsKBGKtP6KznyFB2+u/klbQTdDionR0uaVd176zVQzQ=="
@@ -42,9 +49,10 @@ CORE = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip
 LOCK = "pyodide-lock.json"
 PUBLIC = f"https://cdn.jsdelivr.net/pyodide/v{VERSION}/full"  # where Pyodide keeps its wheels
 WHEELS = ("numpy", "scipy", "sympy", "matplotlib", "pandas")  # and what these depend on
-PURE = {"lazy-loader": [], "control": ["numpy", "scipy", "matplotlib"]}  # from this environment
+PURE = {"lazy-loader": [], "traitlets": [], "control": ["numpy", "scipy", "matplotlib"]}
+# from this environment
 FIRST = ("numpy", "ddlib", "lazy-loader")  # before the first cell
-STILL = "ddlib/widgets"  # figures to handle stay as they were built
+WIDGETS = "ddlib/widgets"  # a wheel of their own: few cells show one
 DATA = re.compile(r"""["']data/([\w.-]+)["']""")
 
 
@@ -159,8 +167,8 @@ def zipped(files: dict[str, bytes]) -> bytes:
 
 
 def sources(folder: Path, under: Path) -> dict[str, bytes]:
-    """Modules of a package and their stubs, by their paths."""
-    paths = [p for p in folder.rglob("*.py*") if p.suffix in {".py", ".pyi"}]
+    """Modules of a package, their stubs, and the scripts of its widgets, by their paths."""
+    paths = [p for p in folder.rglob("*") if p.suffix in {".py", ".pyi", ".js", ".css"}]
     return {path.relative_to(under).as_posix(): path.read_bytes() for path in paths}
 
 
@@ -212,15 +220,15 @@ def runtime(root: Path, mirror: str, kept: Path, out: Path) -> dict[str, int]:
     for name, depends in PURE.items():
         packages[name] = wheel(name, *installed(name), depends, pyodide)
     ours = sources(root / "ddlib", root)
-    ours = {path: content for path, content in ours.items() if not path.startswith(STILL)}
-    depends = [name for name in FIRST if name != "ddlib"]
-    packages["ddlib"] = wheel("ddlib", distribution("ddlib").version, ours, depends, pyodide)
+    widgets = {path: ours.pop(path) for path in sorted(ours) if path.startswith(f"{WIDGETS}/")}
+    depends, version = [name for name in FIRST if name != "ddlib"], distribution("ddlib").version
+    packages["ddlib"] = wheel("ddlib", version, ours, depends, pyodide)
+    packages["ddlib-widgets"] = wheel("ddlib-widgets", version, widgets, ["traitlets"], pyodide)
+    packages["ddlib-widgets"]["imports"] = [WIDGETS.replace("/", ".")]
     rooms = [sources(root / "book" / name, root / "book") for name in ("workshop", "beyond")]
     (out / "workshop.zip").write_bytes(zipped(rooms[0] | rooms[1]))
     (pyodide / LOCK).write_text(json.dumps({**lock, "packages": packages}), encoding="utf-8")
-    for path in PAGE.iterdir():
-        if path.is_file():
-            shutil.copyfile(path, out / path.name)
+    shutil.copytree(PAGE, out, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
     at_first = [*CORE, LOCK, *(packages[name]["file_name"] for name in FIRST)]
     size = {path: path.stat().st_size for path in out.rglob("*") if path.is_file()}
     return {
@@ -238,21 +246,62 @@ def kind(cell) -> str:
     return "check" if judges else ""
 
 
-def needs(source: str) -> str:
-    """What a cell imports by itself that no browser has."""
-    nodes = list(ast.walk(ast.parse(source)))
-    named = [alias.name for n in nodes if isinstance(n, ast.Import) for alias in n.names]
-    named += [n.module or "" for n in nodes if isinstance(n, ast.ImportFrom)]
-    return "torch" if "torch" in {name.partition(".")[0] for name in named} else ""
+@cache
+def stand_in():
+    """What stands in for PyTorch in a page."""
+    spec = importlib.util.spec_from_file_location("torch_of_a_page", PAGE / "instead" / "torch.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def lacking(path: str) -> bool:
+    """Whether a dotted name of PyTorch is not in what stands in for it."""
+    found = stand_in()
+    for part in path.split(".")[1:]:
+        found = getattr(found, part, None)
+    return found is None or type(found).__name__ == "_Lacking"
+
+
+def needs(source: str, known: dict[str, str]) -> str:
+    """What a cell uses of PyTorch that the page lacks; `known`, names from its imports, grows."""
+    used = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            names = [a for a in node.names if a.name.partition(".")[0] == "torch"]
+            known |= {a.asname or "torch": a.name if a.asname else "torch" for a in names}
+        elif isinstance(node, ast.ImportFrom) and f"{node.module}.".startswith("torch."):
+            known |= {a.asname or a.name: f"{node.module}.{a.name}" for a in node.names}
+            used |= {f"{node.module}.{a.name}" for a in node.names}
+        elif isinstance(node, ast.Attribute):
+            root, _, rest = ast.unparse(node).partition(".")
+            if root in known and re.fullmatch(r"[\w.]+", rest):
+                used.add(f"{known[root]}.{rest}")
+    return ", ".join(sorted(filter(lacking, used)))
 
 
 def live_cells(notebook) -> list[dict]:
-    """The cells of a notebook that a reader of the page can run, in order."""
-    return [
-        {"id": cell.id, "kind": kind(cell), "source": cell.source, "needs": needs(cell.source)}
-        for cell in notebook.cells
-        if cell.cell_type == "code" and kind(cell)
-    ]
+    """The cells of a notebook that a reader of the page can run, in order.
+
+    With the names that each takes and gives, the handles of *Change this*, and the solution of an
+    exercise.
+    """
+    code = [cell for cell in notebook.cells if cell.cell_type == "code" and kind(cell)]
+    found, imported, known = [], set(), {}
+    for cell in code:
+        told = names(cell.source, imported)
+        imported = (imported - told.writes - told.perhaps) | told.imports
+        one = {"id": cell.id, "kind": kind(cell), "source": cell.source}
+        one["needs"] = needs(cell.source, known)
+        one["names"] = told.told()
+        if CHANGE_THIS in cell.metadata.get("tags", ()):
+            one["handles"] = [handle._asdict() for handle in handles(cell.source)]
+        found.append(one)
+    answers = [one for one in found if one["kind"] == "answer"]
+    for one, exercise in zip(answers, exercises(notebook)):
+        one["solution"] = exercise.solution
+        one["solves"] = names(f"{exercise.solution}\n{exercise.check}", imported).told()
+    return found
 
 
 def live_page(text: str, notebook, page: str, megabytes: list[int]) -> str:
@@ -274,6 +323,7 @@ def live_page(text: str, notebook, page: str, megabytes: list[int]) -> str:
     island = json.dumps(told).replace("</", "<\\/")
     added = (
         '<link rel="stylesheet" href="../_static/live/live.css">'
+        '<script defer src="../_static/live/follow.js"></script>'
         '<script defer src="../_static/live/live.js"></script>'
         f'<script type="application/json" id="live-page">{island}</script>'
     )

@@ -1,7 +1,7 @@
-"""*Run this page*: what stands in for PyTorch and for widgets, which the browser does not have.
+"""*Run this page*: what ours import and the browser does not have.
 
-`train_ensemble` descends by the sums of its own module, in numpy. What else needs PyTorch says so
-when it is used; a widget takes everything and does nothing: the page's own stays as built.
+`train_ensemble` descends by the sums of its own module, in numpy. What stands in for PyTorch and
+for widgets is in the folder `instead`.
 """
 
 from __future__ import annotations
@@ -9,18 +9,20 @@ from __future__ import annotations
 import importlib.machinery
 import sys
 import types
+from concurrent.futures import Future
 from contextlib import contextmanager
 
 import numpy as np
 
 OURS = ("ddlib", "workshop", "beyond")
-ABSENT = ("torch", "yaml", "joblib", "sklearn", "traitlets", "IPython")
+ABSENT = ("yaml", "joblib", "sklearn")
 """What ours may import and then not use; only in a cell itself is it an error to import it."""
 
-INERT = ("ddlib.widgets", "workshop.chapters.widgets", "beyond.chapters.widgets", "tqdm")
+INERT = ("tqdm",)
 """Modules in which every name is a class that takes anything and does nothing."""
 
 DESCENT = "ddlib.learning.descent"
+PICTURE = "ddlib.widgets._baking.still"  # of a widget's start, for pages without script
 
 
 class _Absent(type):
@@ -41,7 +43,7 @@ class _Inert(type):
 
 
 class Inert(metaclass=_Inert):
-    """A widget, or a progress bar: it stands for nothing and takes everything."""
+    """A progress bar: it stands for nothing and takes everything."""
 
     def __init__(self, *args, **options):
         pass
@@ -79,15 +81,8 @@ class _Stub(types.ModuleType):
 
 
 def _absent(package: str) -> _Stub:
-    """A package that is not there; PyTorch answers what modules ask while they are imported."""
-    stub = _Stub(package, lambda name: _Absent(name, (), {"package": package}))
-    stub.get_ipython = lambda: None  # matplotlib asks for it where IPython is imported
-    if package == "torch":
-        stub.get_num_threads, stub.set_num_threads = lambda: 1, lambda count: None
-        stub.no_grad = stub.inference_mode = lambda *mode: lambda function: function
-        none = types.SimpleNamespace(is_available=lambda: False)
-        stub.backends = types.SimpleNamespace(mkldnn=none)
-    return stub
+    """A package that is not there."""
+    return _Stub(package, lambda name: _Absent(name, (), {"package": package}))
 
 
 class Finder:
@@ -117,6 +112,8 @@ class Finder:
             usual(module)
         if module.__name__ == DESCENT:
             vars(module).update(Descent=Descent, prepare=_prepare, kernels=lambda: "numpy")
+        if module.__name__ == PICTURE:
+            module.still_picture = lambda *given: ""
         if hasattr(module, "ThreadPoolExecutor"):
             module.ThreadPoolExecutor = _Serial
 
@@ -153,6 +150,15 @@ class _Serial:
         pass
 
     map = staticmethod(map)
+
+    @staticmethod
+    def submit(work, *given):
+        done = Future()
+        try:
+            done.set_result(work(*given))
+        except Exception as error:
+            done.set_exception(error)
+        return done
 
 
 def _prepare(x, y):

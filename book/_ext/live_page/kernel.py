@@ -1,23 +1,38 @@
-"""*Run this page*: runs cells in the browser; packages come as cells need them."""
+"""*Run this page*: runs cells in the browser; packages come as cells need them.
+
+A cell finds the names that the cells above it gave when they ran last, and no others: whatever the
+order in which a reader runs cells, a page shows what it would show if it were run from the top.
+"""
 
 from __future__ import annotations
 
 import ast
+import hashlib
 import importlib
 import io
+import json
 import linecache
+import marshal
 import os
+import pickle
 import sys
+import time
 import traceback
 import types
 from contextlib import redirect_stderr, redirect_stdout, suppress
 
-from absent import Inert
+from names import Names, names
 
 os.environ["MPLBACKEND"] = "Agg"
 
-space = {"__name__": "__main__"}
+BARE = {"__name__": "__main__"}
+GONE = object()  # a name that a cell deleted
+space = dict(BARE)
+made: dict[str, dict] = {}  # what each cell gave to names when it ran last
+known: dict[str, Names] = {}
 blocked: set[str] = set()  # names that a cell would have made which cannot run here
+emitting = None  # what shows something below the cell that runs
+page = None  # `page(text, buffers)` tells the widgets of the page something; the worker sets it
 
 
 class Stream:
@@ -44,28 +59,163 @@ class Stream:
         return False
 
 
-async def run(source: str, name: str, emit, fetch) -> bool:
+async def run(source: str, name: str, emit, fetch, above=None, keep=True, quiet=False) -> bool:
     """Run a cell; whether it ran through.
 
     `emit(kind, text)` shows something; `await fetch(package)` gets a package, and tells whether
-    there is one of that name.
+    there is one of that name. With the names of the cells `above`, it finds what these gave, in
+    their order, and nothing else. What it gives itself is not kept without `keep`, and what it
+    shows is not shown if it is `quiet`, unless it does not run through.
     """
+    if above is not None:
+        _stand(above)
     linecache.cache[name] = len(source), None, source.splitlines(True), name
     try:
         tree = ast.parse(source, name)
-    except SyntaxError as error:
+    except (SyntaxError, ValueError) as error:
         emit("error", "".join(traceback.format_exception_only(error)))
+        emit("syntax", json.dumps([getattr(error, "lineno", None), getattr(error, "msg", "")]))
         return False
     await _imports(tree, fetch)
+    if _twin(tree) and sys.modules.get("torch") and not quiet:
+        emit("twin", "")
+    found = names(source, {n for n, value in space.items() if isinstance(value, types.ModuleType)})
+    before = dict(space)
+    altered = found.changes.union(*(of for one in known.values() for of in one.alters.values()))
+    prints = {n: footprint(before[n]) for n in altered & before.keys()}
+    loud = emit
+    if quiet:
+        emit = _only_problems(emit)
+    Progress.emit, Progress.last = emit, 0.0
+    try:
+        return await _until_it_runs(tree, name, emit, fetch)
+    finally:
+        Progress.emit = None
+        if keep:
+            here = {n: v for n, v in space.items() if n in found.writes or before.get(n) is not v}
+            made[name] = here | dict.fromkeys(before.keys() - space.keys(), GONE)
+            known[name] = found
+            told = {n: footprint(value) for n, value in made[name].items() if value is not GONE}
+            same = {n for n, seen in prints.items() if seen and seen == footprint(before[n])}
+            altered = sorted((altered & before.keys()) - same)
+            loud("names", json.dumps({**found.told(), "prints": told, "altered": altered}))
+
+
+def _stand(above) -> None:
+    """Give names what the cells above gave them."""
+    space.clear()
+    space.update(BARE)
+    for name in above:
+        space.update(made.get(name, {}))
+    for name in [n for n, value in space.items() if value is GONE]:
+        del space[name]
+
+
+def _only_problems(emit):
+    kinds = {"error", "syntax", "hint", "memory", "stopped", "torch", "above", "after", "progress"}
+
+    def only(kind, text):
+        if kind in kinds:
+            emit(kind, text)
+
+    only.quiet = True
+    return only
+
+
+class _Printer(pickle.Pickler):
+    """Pickles, with a cell's functions by their code, to be compared and never read."""
+
+    def reducer_override(self, value):
+        if isinstance(value, types.FunctionType) and value.__globals__ is space:
+            inside = [cell.cell_contents for cell in value.__closure__ or ()]
+            code = marshal.dumps(value.__code__, 2)
+            return tuple, ([code, value.__defaults__, value.__kwdefaults__, inside],)
+        if isinstance(value, types.ModuleType):
+            return str, (value.__name__,)
+        return NotImplemented
+
+
+class _Digest:
+    def __init__(self):
+        self.sum = hashlib.sha1(usedforsecurity=False)
+
+    def write(self, content):
+        self.sum.update(content)
+        return len(content)
+
+
+def footprint(value) -> str | None:
+    """The same for the same value, another one for another; None if nobody can tell."""
+    digest = _Digest()
+    try:
+        _Printer(digest).dump(value)
+    except Exception:  # what cannot be pickled says so in many ways
+        return None
+    return digest.sum.hexdigest()
+
+
+class Progress:
+    """In place of `tqdm`: the page draws it, and may ask in between to stop."""
+
+    emit = None
+    last = 0.0
+    pause = staticmethod(lambda: None)  # the worker's: it may hear what the page says
+
+    def __init__(self, iterable=None, desc="", total=None, **options):
+        self.iterable, self.desc, self.n = iterable, desc or "", 0
+        self.total = len(iterable) if total is None and hasattr(iterable, "__len__") else total
+
+    def __iter__(self):
+        for value in self.iterable:
+            yield value
+            self.update()
+
+    def update(self, n=1):
+        self.n += n
+        now = time.monotonic()
+        if self.emit is None or now - Progress.last < 0.1:
+            return
+        Progress.last = now
+        heard = bool(Progress.pause())
+        if self.total:
+            Progress.emit("progress", json.dumps([self.n / self.total, self.desc, heard]))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        self.close()
+
+    def __getattr__(self, name):
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return lambda *args, **options: None
+
+
+def trange(*args, **options):
+    return Progress(range(*args), **options)
+
+
+def start(pause) -> None:
+    """Take the place of `tqdm`; `pause()` lets the worker hear what the page says."""
+    Progress.pause = staticmethod(pause)
+    for name in ("tqdm", "tqdm.auto"):
+        sys.modules[name] = types.ModuleType(name)
+        vars(sys.modules[name]).update(tqdm=Progress, trange=trange)
+    sys.modules["tqdm"].auto = sys.modules["tqdm.auto"]
+
+
+async def _until_it_runs(tree, name: str, emit, fetch) -> bool:
+    """Run it, again after each package that it turns out to need."""
     tried: set[str] = set()
     while True:
         try:
             _execute(tree, name, emit)
             blocked.difference_update(_defined(tree))
             return True
-        except ModuleNotFoundError as error:
+        except ImportError as error:
             # A function imported something as it ran: it gets it, and the cell starts again.
-            package = (error.name or "").partition(".")[0]
+            package = _missing(error)
             if package not in tried and await _got(package, fetch):
                 tried.add(package)
                 emit("again", "")
@@ -77,8 +227,17 @@ async def run(source: str, name: str, emit, fetch) -> bool:
             return False
 
 
+def _missing(error: ImportError) -> str:
+    """What is not there; ours say so of PyTorch in their own words."""
+    absent = isinstance(error, ModuleNotFoundError) or error.name == "torch"
+    return (error.name or "") if absent else ""
+
+
 async def _got(package: str, fetch) -> bool:
-    got = bool(package) and await fetch(package)
+    """Get what is not there: a part of a package that comes by itself, or all of it."""
+    got = bool(package) and (
+        await fetch(package) or ("." in package and await fetch(package.partition(".")[0]))
+    )
     importlib.invalidate_caches()
     return got
 
@@ -93,8 +252,8 @@ async def _imports(tree, fetch) -> None:
         for _ in range(20):
             try:
                 return step()
-            except ModuleNotFoundError as error:
-                if not await _got((error.name or "").partition(".")[0], fetch):
+            except ImportError as error:
+                if not await _got(_missing(error), fetch):
                     return None
             except Exception:
                 return None
@@ -110,6 +269,8 @@ async def _imports(tree, fetch) -> None:
 def _execute(tree, name: str, emit) -> None:
     body = list(tree.body)
     last = body.pop() if body and isinstance(body[-1], ast.Expr) else None
+    global emitting
+    emitting = emit
     out, err = Stream(emit, "text"), Stream(emit, "warning")
     with redirect_stdout(out), redirect_stderr(err):
         try:
@@ -119,10 +280,11 @@ def _execute(tree, name: str, emit) -> None:
         finally:
             out.flush()
             err.flush()
-    if last is not None and value is not None:
+    quiet = getattr(emit, "quiet", False)
+    if last is not None and value is not None and not quiet:
         show(value, emit)
     pyplot = sys.modules.get("matplotlib.pyplot")
-    for number in pyplot.get_fignums() if pyplot else ():
+    for number in pyplot.get_fignums() if pyplot and not quiet else ():
         show(pyplot.figure(number), emit)
     if pyplot:
         pyplot.close("all")
@@ -130,8 +292,9 @@ def _execute(tree, name: str, emit) -> None:
 
 def show(value, emit) -> None:
     """A value as a notebook would show it."""
-    if isinstance(value, Inert):
-        return emit("widget", "")
+    widgets = sys.modules.get("anywidget")
+    if widgets and isinstance(value, widgets.AnyWidget):
+        return emit("widget", str(value.show()))
     for kind in ("html", "svg", "latex", "markdown"):
         told = getattr(value, f"_repr_{kind}_", None)
         text = told() if told and not isinstance(value, type) else None
@@ -142,6 +305,29 @@ def show(value, emit) -> None:
     emit("text", f"{value!r}\n")
 
 
+def display(*values) -> None:
+    """Show values below the cell that runs."""
+    sys.stdout.flush()  # what was printed comes first
+    for value in values:
+        show(value, emitting)
+
+
+def heard(text: str, buffers) -> str:
+    """Take what a widget of the page says; returns the names of the widget if it changed."""
+    told = {"number": json.loads(text)["number"]}
+    out = Stream(lambda _, said: page(json.dumps({**told, "said": said}), []), "text")
+    widget = None
+    with redirect_stdout(out), redirect_stderr(out):
+        try:
+            widget = sys.modules["anywidget"].heard(text, buffers)
+        except Exception as error:
+            out.write(f"{type(error).__name__}: {error}\n")
+    out.flush()
+    page(json.dumps({**told, "applied": True}), [])
+    names = [name for name, value in space.items() if widget is not None and value is widget]
+    return json.dumps(names)
+
+
 def _svg(figure) -> str:
     made = io.StringIO()
     figure.savefig(made, format="svg", bbox_inches="tight")
@@ -150,16 +336,25 @@ def _svg(figure) -> str:
 
 def _tell(error, tree, name: str, emit) -> None:
     """What went wrong, from the cell's own line on; and in plain words what cannot be had here."""
-    if isinstance(error, ModuleNotFoundError) and (error.name or "").partition(".")[0] == "torch":
-        emit("torch", "")
+    if isinstance(error, ImportError) and _missing(error).partition(".")[0] == "torch":
+        emit("torch", "PyTorch")
+    elif lacks := getattr(error, "lacks", ""):
+        emit("torch", lacks)
     elif isinstance(error, NameError) and error.name in blocked:
-        emit("torch" if error.name == "torch" else "above", error.name)
+        emit("above", error.name)
+    elif isinstance(error, KeyboardInterrupt):
+        sys.last_value = error  # as in a notebook: what a training reached is to be had from it
+        emit("stopped", str(error))
+        return
     else:
         inside = error.__traceback__
         while inside and inside.tb_frame.f_code.co_filename != name:
             inside = inside.tb_next
         lines = traceback.format_exception(type(error), error, inside)
         emit("error", "".join(lines))
+        if isinstance(error, MemoryError):
+            emit("memory", "")
+            return
         if blocked:  # what a cell above did not do may be missed in many ways
             emit("after", "")
         elif isinstance(error, NameError):
@@ -172,6 +367,14 @@ def _tell(error, tree, name: str, emit) -> None:
         blocked.add(lost)
         space.pop(lost, None)  # half of it may be there
     blocked.update({"torch"} - space.keys())
+
+
+def _twin(tree) -> bool:
+    """Whether a cell itself imports what stands in for PyTorch."""
+    steps = [step.body[0] for step in _imports_of(tree)]
+    named = [alias.name for step in steps if isinstance(step, ast.Import) for alias in step.names]
+    named += [step.module or "" for step in steps if isinstance(step, ast.ImportFrom)]
+    return "torch" in {name.partition(".")[0] for name in named}
 
 
 def _imports_of(tree) -> list[ast.Module]:

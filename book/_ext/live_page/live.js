@@ -1,11 +1,14 @@
 // *Run this page*: on a click, and not before, Python is loaded into a worker, and the open cells
-// of the lesson can be changed and run.
+// of the lesson can be changed and run. What follows from a change is marked, and runs alone.
 (() => {
   const island = document.getElementById("live-page");
   if (!island) return;
   const { cells, data, megabytes, notebook } = JSON.parse(island.textContent);
   const home = new URL(".", document.currentScript.src);
-  const MINE = `live:${location.pathname}`;
+  const KEYS = "live:"; // one a page
+  const MINE = KEYS + location.pathname;
+  const REACT = "live-react";
+  const FORMAT = "direct-drive-work-1";
 
   const make = (tag, attributes = {}, ...inside) => {
     const el = document.createElement(tag);
@@ -20,28 +23,50 @@
     return el;
   };
 
-  // --- what a reader changed: kept until reset, if the browser keeps anything ---
-  const recall = () => {
+  // --- what a reader did: kept on this device until it is erased, if the browser keeps anything ---
+  let blocked = false; // it keeps nothing: then it lasts as long as the page
+  const read = (key) => {
     try {
-      return JSON.parse(localStorage.getItem(MINE)) ?? {};
+      return JSON.parse(localStorage.getItem(key));
     } catch {
-      return {};
+      return null;
     }
   };
-  const remember = () => {
-    const changed = cells.filter((c) => c.area && c.area.value !== c.source);
-    const kept = Object.fromEntries(changed.map((c) => [c.id, [c.source, c.area.value]]));
+  const write = (key, value) => {
     try {
-      if (changed.length) localStorage.setItem(MINE, JSON.stringify(kept));
-      else localStorage.removeItem(MINE);
+      if (value === null) localStorage.removeItem(key);
+      else localStorage.setItem(key, JSON.stringify(value));
     } catch {
-      // it lasts as long as the page
+      blocked = true;
     }
-    return changed.length;
   };
+  const work = (found) => ({
+    changes: { ...(found?.changes ?? {}) },
+    solved: Array.isArray(found?.solved) ? found.solved : [],
+  });
+  let mine = work(read(MINE));
+  try {
+    localStorage.length;
+  } catch {
+    blocked = true;
+  }
+
+  function remember() {
+    if (cells.some((c) => c.area)) {
+      const changed = cells.filter((c) => c.area && c.area.value !== c.source);
+      mine.changes = Object.fromEntries(changed.map((c) => [c.id, [c.source, c.area.value]]));
+    }
+    const some = Object.keys(mine.changes).length;
+    write(MINE, some || mine.solved.length ? mine : null);
+    tally();
+    return some;
+  }
 
   // --- the bar above the first cell ---
-  for (const cell of cells) cell.el = document.querySelector(`[data-live="${cell.id}"]`);
+  cells.forEach((cell, place) => {
+    cell.el = document.querySelector(`[data-live="${cell.id}"]`);
+    Object.assign(cell, { place, shown: cell.source, turn: 0, asBuilt: cell.names });
+  });
   const bar = make("section", { class: "live-bar", "aria-label": "Run this page" });
   const status = make("p", { class: "live-status", role: "status" });
   const progress = make("div", {
@@ -54,26 +79,132 @@
   });
   progress.append(make("span"));
   const begin = button("Run this page", "", () => start());
-  const all = button("Run all", "", () => enqueue(cells));
-  const stop = button("Stop", "Stop: what runs is ended, Python starts afresh", () => stopped());
+  const follows = button("Run what follows", "Run what follows from your changes", () => followUp());
+  const all = button("Run all", "", () => enqueue(cells, true));
+  const stop = button("Stop", "Stop what runs", () => halt());
   const reset = button("Reset", "Reset: code and output as in the book", () => asBuilt());
-  const changes = Object.keys(recall()).length;
+  const react = make("input", { type: "checkbox", role: "switch", id: "live-react" });
+  react.checked = read(REACT) === true;
+  react.addEventListener("change", () => {
+    write(REACT, react.checked || null);
+    if (react.checked) followUp();
+    else clearTimeout(timer);
+  });
+  const reacts = make("label", { class: "live-react", for: "live-react" });
+  reacts.append(react, "React: what follows runs by itself, half a second after a change");
+
+  // What is kept, to be taken along and to be erased.
+  const told = make("summary");
+  const own = make("details", { class: "live-own" }, told);
+  const heardOf = make("p", { class: "live-kept", role: "status" });
+  const asked = cells.filter((c) => c.kind === "answer");
+  function tally() {
+    const done = asked.filter((c) => mine.solved.includes(c.id)).length;
+    told.textContent = `Solved: ${done} of ${asked.length}. Your work`;
+    for (const cell of asked) cell.el.classList.toggle("live-solved", mine.solved.includes(cell.id));
+  }
+  const picked = make("input", { type: "file", accept: ".json,application/json", hidden: "" });
+  picked.addEventListener("change", () => takeIn(picked.files[0]));
+  own.append(
+    make(
+      "p",
+      {},
+      "Your changes and the exercises that you solved stay on this device. Nothing is sent.",
+    ),
+    button("Save as a file", "Save your work on all pages of the book as a file", () => takeOut()),
+    button("Open a file", "Open a file with your work", () => picked.click()),
+    button("Erase", "Erase your work on all pages of the book", () => erase()),
+    picked,
+    heardOf,
+  );
+  const keptNothing =
+    "This browser keeps nothing for this site. Your changes last until you leave the page; “Save as a file” keeps them.";
+
+  function pages() {
+    const found = {};
+    try {
+      for (const key of Object.keys(localStorage))
+        if (key.startsWith(KEYS)) found[key.split("/").at(-1)] = work(read(key));
+    } catch {
+      blocked = true;
+    }
+    if (Object.keys(mine.changes).length || mine.solved.length) found[MINE.split("/").at(-1)] = mine;
+    return found;
+  }
+
+  function takeOut() {
+    const content = JSON.stringify({ format: FORMAT, pages: pages() }, null, 1);
+    const address = URL.createObjectURL(new Blob([content], { type: "application/json" }));
+    make("a", { href: address, download: "direct-drive-work.json" }).click();
+    setTimeout(() => URL.revokeObjectURL(address), 10_000);
+    heardOf.textContent = "A file with your work on all pages of the book was saved.";
+  }
+
+  async function takeIn(file) {
+    picked.value = "";
+    let found;
+    try {
+      found = JSON.parse(await file.text());
+    } catch {
+      found = undefined;
+    }
+    if (found?.format !== FORMAT || typeof found.pages !== "object") {
+      heardOf.textContent = "This file holds no work from this book. Nothing was changed.";
+      return;
+    }
+    const [here] = MINE.split("/").slice(-1);
+    for (const [page, one] of Object.entries(found.pages)) {
+      if (page === here) mine = work(one);
+      write(MINE.slice(0, -here.length) + page, work(one));
+    }
+    for (const cell of cells) if (cell.area) setText(cell, keptText(cell));
+    remember();
+    mark();
+    heardOf.textContent = `Your work on ${Object.keys(found.pages).length} pages is here again.`;
+  }
+
+  function erase() {
+    if (!confirm("Erase your changes and what you solved, on all pages of this book?")) return;
+    try {
+      for (const key of Object.keys(localStorage)) if (key.startsWith(KEYS)) write(key, null);
+    } catch {
+      blocked = true;
+    }
+    mine = work();
+    write(REACT, null);
+    react.checked = false;
+    if (cells.some((c) => c.area)) asBuilt(true);
+    tally();
+    heardOf.textContent = "Your work on all pages of this book was erased.";
+  }
+
+  const lacks = cells.filter((c) => c.needs).map((c) => c.needs);
   status.textContent =
     `Change the code of this page and run it, here in the browser. A click loads Python from ` +
     `this site: ${megabytes[0]} MB, up to ${megabytes[1]} MB with all that cells import. The first ` +
     `run takes half a minute more than the page says.` +
-    (changes ? " What you changed last time is kept." : "");
+    (lacks.length ? ` PyTorch's ${lacks.join(", ")} are not in a page: the notebook has them.` : "") +
+    (Object.keys(mine.changes).length ? " What you changed last time is kept." : "");
   bar.append(begin, status, progress);
+  if (asked.length) bar.append(own);
+  tally();
+  if (blocked) heardOf.textContent = keptNothing;
   // Beside the sections of the page, not in one: so it stays in view down to the last cell.
-  let place = cells[0].el;
-  while (place.parentElement.parentElement.closest("section")) place = place.parentElement;
-  place.before(bar);
+  let spot = cells[0].el;
+  while (spot.parentElement.parentElement.closest("section")) spot = spot.parentElement;
+  spot.before(bar);
 
   const say = (text) => {
     if (status.textContent !== text) status.textContent = text; // it is read out at each change
   };
 
   // --- cells ---
+  const text = (cell) => cell.area?.value ?? cell.source;
+  const keptText = (cell) => {
+    const [from, changed] = mine.changes[cell.id] ?? [];
+    return from === cell.source && typeof changed === "string" ? changed : cell.source;
+  };
+
   function open(cell, number) {
     const input = cell.el.querySelector(".cell_input");
     cell.name = `cell ${number + 1}`;
@@ -88,11 +219,12 @@
     if (caption) caption.before(cell.told);
     else cell.el.append(cell.told);
     if (cell.needs) {
-      cell.told.append(note("torch"));
+      cell.told.append(note("torch", cell.needs));
       return;
     }
     const tools = make("div", { class: "live-tools" });
     cell.time = make("span", { class: "live-time" });
+    cell.mark = make("span", { class: "live-mark" });
     const check = cell.kind === "check";
     tools.append(
       button(check ? "Check" : "Run", `${check ? "Check the answer" : "Run"}: ${cell.name}`, () =>
@@ -105,13 +237,19 @@
           enqueue([...cells.slice(0, number), ...withCheck(number)]),
         ),
       );
-    tools.append(cell.time);
+    const answer = check && cells[number - 1];
+    if (answer?.solution)
+      tools.append(
+        button("Run the solution", `Run the solution beside your answer: ${cell.name}`, () =>
+          beside(answer, cell),
+        ),
+      );
+    tools.append(cell.time, cell.mark);
     cell.tools = tools;
     if (check) {
       cell.told.before(tools);
       return;
     }
-    const [from, mine] = recall()[cell.id] ?? [];
     cell.area = make("textarea", {
       class: "live-code",
       spellcheck: "false",
@@ -120,11 +258,7 @@
       "aria-label": `Code of ${cell.name}`,
       "aria-describedby": "live-keys",
     });
-    cell.area.value = from === cell.source ? mine : cell.source;
-    const fit = () => {
-      cell.area.rows = cell.area.value.split("\n").length;
-      cell.el.classList.toggle("live-changed", cell.area.value !== cell.source);
-    };
+    cell.area.value = keptText(cell);
     // Tab indents once something was typed here; it leaves a cell that is passed through, and
     // after Escape: nobody is trapped.
     let indents = false;
@@ -132,8 +266,7 @@
     cell.area.addEventListener("pointerdown", () => setTimeout(() => (indents = true)));
     cell.area.addEventListener("input", () => {
       indents = true;
-      fit();
-      remember();
+      changed(cell);
     });
     cell.area.addEventListener("keydown", (event) => {
       if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) {
@@ -145,10 +278,125 @@
         document.execCommand("insertText", false, "    "); // so that it can be undone
       }
     });
-    cell.fit = fit;
-    fit();
     input.hidden = true;
     input.after(cell.area, tools);
+    if (cell.handles?.length) tools.before(sliders(cell));
+    fit(cell);
+  }
+
+  function fit(cell) {
+    cell.area.rows = cell.area.value.split("\n").length;
+    cell.el.classList.toggle("live-changed", cell.area.value !== cell.source);
+    for (const update of cell.sliders ?? []) update();
+  }
+
+  function setText(cell, value) {
+    if (cell.area.value !== value) cell.area.value = value;
+    fit(cell);
+  }
+
+  function changed(cell) {
+    fit(cell);
+    remember();
+    if (blocked) heardOf.textContent = keptNothing;
+    mark();
+    clearTimeout(timer);
+    if (react.checked) timer = setTimeout(followUp, 500);
+  }
+
+  // --- handles: the numbers of *Change this* ---
+  const NUMBERS = /(?<![\w.\])])[-]?\d[\d_]*(?:\.\d*)?(?:[eE][-+]?\d+)?(?![\w(])/g;
+
+  // Where a handle's number stands in the code as it is now; undefined if it is not there any more.
+  function found(cell, { target, place, count }) {
+    let from = 0;
+    for (const line of cell.area.value.split("\n")) {
+      const sign = line.indexOf("=");
+      if (sign > 0 && line.slice(0, sign).trim() === target) {
+        const code = line.slice(sign + 1).replace(/#.*$/, "");
+        const numbers = [...code.matchAll(NUMBERS)];
+        if (numbers.length !== count) return undefined;
+        const [written] = numbers[place];
+        const start = from + sign + 1 + numbers[place].index;
+        return { value: Number(written.replaceAll("_", "")), start, end: start + written.length };
+      }
+      from += line.length + 1;
+    }
+    return undefined;
+  }
+
+  function written(value, { whole, step }) {
+    if (whole) return String(Math.round(value));
+    const digits = Math.max(1, Math.ceil(-Math.log10(step) - 1e-9));
+    const plain = value.toFixed(Math.min(digits, 12)).replace(/(\.\d+?)0+$/, "$1");
+    return plain;
+  }
+
+  function sliders(cell) {
+    cell.sliders = [];
+    const rows = cell.handles.map((handle, k) => {
+      const id = `live-handle-${cell.place}-${k}`;
+      const range = make("input", { type: "range", id, min: handle.low, max: handle.high });
+      range.step = handle.step;
+      const shown = make("output", { for: id });
+      const name = handle.unit ? `${handle.label}, ${handle.unit}` : handle.label;
+      range.addEventListener("input", () => {
+        const spot = found(cell, handle);
+        if (!spot) return;
+        const value = written(Number(range.value), handle);
+        cell.area.setRangeText(value, spot.start, spot.end, "preserve");
+        changed(cell);
+      });
+      cell.sliders.push(() => {
+        const spot = found(cell, handle);
+        range.disabled = !spot;
+        if (!spot) return (shown.textContent = "–");
+        if (Number(range.value) !== spot.value) range.value = spot.value;
+        shown.textContent = written(spot.value, { ...handle, step: handle.step / 100 });
+        range.setAttribute("aria-valuetext", `${shown.textContent} ${handle.unit}`.trim());
+      });
+      return make("div", {}, make("label", { for: id }, name), range, shown);
+    });
+    const title = make("summary", {}, "Handles: each moves a number of the code above");
+    return make("details", { class: "live-handles", open: "" }, title, make("div", {}, ...rows));
+  }
+
+  // --- what follows from a change ---
+  let timer;
+
+  // Cells whose output is not what their code and the cells above give.
+  function mark() {
+    const different = cells.filter((c) => !c.needs && text(c) !== c.shown);
+    const only = new Map();
+    for (const cell of different)
+      if (cell.handles) only.set(cell.place, follow.renamed(cell.shown, text(cell)));
+    const later = follow.after(cells, follow.graph(cells), different.map((c) => c.place), only);
+    let count = 0;
+    for (const cell of cells) {
+      if (!cell.mark) continue;
+      const behind = cell.stale || later.has(cell.place);
+      const said = different.includes(cell)
+        ? "Changed, and not run since."
+        : behind
+          ? "May show what came before your change."
+          : "";
+      count += behind || different.includes(cell);
+      if (cell.mark.textContent !== said) cell.mark.textContent = said;
+      cell.el.classList.toggle("live-stale", behind);
+    }
+    follows.disabled = !count;
+    return count;
+  }
+
+  function followUp() {
+    clearTimeout(timer);
+    if (!all.isConnected) return; // Python is not asked for yet
+    const first = cells.filter((c) => !c.needs && (text(c) !== c.shown || c.stale || c.failed));
+    const graph = follow.graph(cells);
+    const later = follow.after(cells, graph, first.map((c) => c.place));
+    if (running && (first.includes(running) || later.has(running.place))) cancel();
+    else drop();
+    if (first.length) enqueue(first, true);
   }
 
   // An answer is judged as soon as it has run.
@@ -158,16 +406,39 @@
     return judged ? [cells[number], next] : [cells[number]];
   };
 
+  // The solution runs where the answer stands, and what it gives to names is not kept.
+  function beside(answer, check) {
+    if (!answer.extra) {
+      const told = make("div", { class: "live-output", role: "group" });
+      told.setAttribute("aria-label", `Output of the solution of ${answer.name}`);
+      const ours = make("div", {}, make("p", { class: "live-head" }, "The solution"), told);
+      const yours = make("div", {}, make("p", { class: "live-head" }, "Your answer"));
+      const both = make("div", { class: "live-beside" }, yours, ours);
+      check.told.before(both);
+      yours.append(check.told);
+      answer.extra = {
+        name: `solution of ${answer.name}`, place: answer.place, el: check.el, told, built: [],
+        source: `${answer.solution}\n${check.source}`, names: answer.solves, extra: true, away: [],
+        kind: "solution", time: check.time,
+      }; // prettier-ignore
+    }
+    enqueue([answer.extra]);
+  }
+
   // What the book shows makes room for what the reader's code gives: two figures may share an id.
   function fresh(cell) {
-    for (const el of cell.widget ? [] : cell.built) {
+    for (const el of cell.built) {
       const mark = new Comment();
       el.replaceWith(mark);
       cell.away.push([mark, el]);
     }
-    cell.built = cell.widget ? cell.built : [];
+    cell.built = [];
+    emptied(cell);
+  }
+
+  function emptied(cell) {
+    for (const each of hosts) each.drop(cell.told);
     cell.told.replaceChildren();
-    cell.error = false;
   }
 
   function restore(cell) {
@@ -175,31 +446,61 @@
     cell.built.push(...cell.away.splice(0).map(([, el]) => el));
   }
 
-  function asBuilt() {
-    if (remember() && !confirm("Drop your changes and show code and output of the book?")) return;
+  function asBuilt(sure = false) {
+    const ask = "Drop your changes and show code and output of the book?";
+    if (!sure && remember() && !confirm(ask)) return;
     for (const cell of cells) {
       restore(cell);
-      cell.told.replaceChildren(...(cell.needs ? [note("torch")] : []));
+      emptied(cell);
+      cell.told.append(...(cell.needs ? [note("torch", cell.needs)] : []));
+      if (cell.extra) emptied(cell.extra);
+      Object.assign(cell, { shown: cell.source, stale: false, failed: false, asked: false });
+      Object.assign(cell, { names: cell.asBuilt, prints: undefined, altered: undefined });
       if (cell.time) cell.time.textContent = "";
-      if (!cell.area) continue;
-      cell.area.value = cell.source;
-      cell.fit();
+      if (cell.area) setText(cell, cell.source);
     }
     remember();
-    stopped("Code and output are the book's again. Python starts afresh.");
+    clearTimeout(timer);
+    drop();
+    kept = "Code and output are the book's again. Python starts afresh.";
+    restart();
+    mark();
+    document.documentElement.dataset.live = "idle";
   }
 
   // --- what comes from the worker ---
   function note(kind, text = "") {
     const link = make("a", { href: notebook, download: "" }, "download the notebook");
     const said = {
-      torch: ["This cell needs PyTorch, not available in the page: ", link, "."],
-      above: [`This cell needs “${text}” of a cell above that needs PyTorch: `, link, "."],
-      after: ["A cell above needs PyTorch and did not run; this may follow: ", link, "."],
-      widget: ["The figure to handle is the book's: it does not follow your changes here."],
-      hint: [`Is “${text}” made in a cell above? “Run to here” runs them all.`],
+      torch: () => [`This cell needs ${text}, not available in the page: `, link, "."],
+      twin: () => [
+        "PyTorch is not available in a page: a small stand-in computes the same with numpy.",
+      ],
+      above: () => [`This cell needs “${text}” of a cell above that needs PyTorch: `, link, "."],
+      after: () => ["A cell above needs PyTorch and did not run; this may follow: ", link, "."],
+      hint: () => [`Is “${text}” made in a cell above? “Run to here” runs them all.`],
+      syntax: () => {
+        const [line, why] = JSON.parse(text);
+        const where = line ? `line ${line} of this cell` : "this cell";
+        return [`Python cannot read ${where}${why ? ` (${why})` : ""}. Nothing of the cell ran.`];
+      },
+      memory: () => [
+        "This needs more memory than a page has. Nothing that you wrote is lost: make it smaller, or ",
+        link,
+        " and run it on your own machine.",
+      ],
+      stopped: () => [`Stopped. ${text}`],
+      ended: () => [
+        "Stopped. A cell that computes hears nothing, so Python was ended and starts afresh. " +
+          "Your code and all other output stay; the next run first does again what it needs of " +
+          "the cells above.",
+      ],
+      lost: () => [
+        `Python broke off${text ? ` (${text})` : ""} and starts afresh with the next run. Nothing ` +
+          "that you wrote is lost.",
+      ],
     }[kind];
-    return make("p", { class: "live-note" }, ...said);
+    return said ? make("p", { class: "live-note" }, ...said()) : "";
   }
 
   function printed(text, kind) {
@@ -232,14 +533,13 @@
 
   function show(cell, kind, text) {
     const place = cell.told;
-    if (kind === "again") return place.replaceChildren();
+    if (kind === "again") return emptied(cell);
     if (kind === "text" || kind === "warning" || kind === "error") {
       const last = place.lastElementChild;
       if (last?.classList.contains(`live-${kind}`)) last.firstChild.append(text);
       else place.append(printed(text, kind));
-      return;
-    }
-    if (kind === "html") {
+      if (kind === "text") cell.said = (cell.said ?? "") + text;
+    } else if (kind === "html") {
       const el = make("div", { class: "output text_html" });
       el.innerHTML = text;
       place.append(el);
@@ -249,33 +549,74 @@
       el.classList.add("output", "tex2jax_process");
       place.append(el);
       window.MathJax?.typesetPromise?.([el]);
-    } else {
-      if (kind === "widget") {
-        cell.widget = true;
-        restore(cell);
-      }
-      place.append(note(kind, text));
-    }
+    } else if (kind === "progress") {
+      const [share, what, hears] = JSON.parse(text);
+      cell.hears = hears;
+      cell.gauge ??= make("progress", { max: 1, "aria-label": `Progress of ${cell.name}` });
+      cell.gauge.value = share;
+      if (!cell.gauge.isConnected) cell.time.after(cell.gauge);
+      cell.time.textContent = `running: ${what ? `${what}, ` : ""}${Math.floor(100 * share)} %`;
+    } else if (kind === "widget") {
+      cell.widget = true;
+      const el = make("div", { class: "output" });
+      place.append(el);
+      withHost(() => host.mount(Number(text), el));
+    } else place.append(note(kind, text));
+  }
+
+  // --- widgets: their script comes with the first one ---
+  const hosts = []; // one for each worker that had any
+  let host, hosting;
+  function withHost(act) {
+    hosting ??= import(new URL("widgets.mjs", home)).then((module) => {
+      const mine = worker;
+      const post = (message, buffers) => mine.postMessage({ widget: JSON.stringify(message), buffers });
+      host = module.host(post, () => Boolean(running));
+      hosts.push(host);
+    });
+    hosting = hosting
+      .then(() => void (host && act()))
+      .catch((error) => say(`The figure to handle did not come: ${error.message}.`));
+  }
+  function ended() {
+    worker?.terminate();
+    worker = undefined;
+    host?.end();
+    host = hosting = undefined;
   }
 
   // --- the worker, and what is to be run ---
-  let worker, ready, running, waiting, expected, loaded;
+  let worker, ready, running, expected, loaded, interrupts, turns, asking;
   let kept = ""; // what is said while Python starts afresh and nobody waits for it
+  let spread = false; // whether what follows runs, too
+  let patience = 5000; // ms: a restart takes so long
+  const waiting = new Set(); // cells
+  const drop = () => {
+    for (const cell of waiting) cell.asked = false;
+    waiting.clear();
+  };
+  const isolated = globalThis.crossOriginIsolated && globalThis.SharedArrayBuffer;
 
   function boot() {
     worker = new Worker(new URL("worker.mjs", home), { type: "module" });
     ready = false;
-    loaded = 0;
+    loaded = turns = 0;
+    for (const cell of cells) cell.turn = 0;
     expected = megabytes[0] * 1e6;
     progress.hidden = false;
     advance(0);
-    const mine = worker;
-    worker.onmessage = ({ data: message }) => mine === worker && heard(message);
+    const [began, mine] = [performance.now(), worker];
+    worker.onmessage = ({ data: message }) => {
+      if (mine !== worker) return;
+      if (message.ready) patience = Math.max(3000, performance.now() - began);
+      heard(message);
+    };
     worker.onerror = (event) => {
       event.preventDefault?.();
       if (mine === worker) heard({ failed: event.message || "its files are not on this site" });
     };
-    worker.postMessage({ start: data.map((name) => `data/${name}`) });
+    interrupts = isolated ? new Uint8Array(new SharedArrayBuffer(1)) : undefined;
+    worker.postMessage({ start: data.map((name) => `data/${name}`), interrupts });
   }
 
   function advance(bytes) {
@@ -290,7 +631,8 @@
   }
 
   function heard(message) {
-    if (message.bytes) {
+    if (message.widget) withHost(() => host.heard(message.widget, message.buffers));
+    else if (message.bytes) {
       progress.hidden = ready && !running;
       advance(message.bytes);
     } else if (message.ready) {
@@ -299,67 +641,250 @@
       expected = megabytes[1] * 1e6;
       say(kept || "Python is ready.");
       next();
-    } else if (message.failed) {
-      progress.hidden = true;
-      waiting = [];
-      running?.el.classList.remove("live-running");
-      running = undefined;
-      worker.terminate();
-      worker = undefined; // the next run tries again
-      document.documentElement.dataset.live = "idle";
-      say(`Python ${ready ? "broke off" : "did not start"}: ${message.failed}.`);
-    } else if (message.done) finish(message);
+    } else if (message.failed) lost(message.failed);
+    else if (message.began) clearTimeout(asking);
+    else if (message.kind === "moved") moved(message.names);
+    else if (message.done) finish(message);
     else if (running && message.run === running.name) {
-      if (message.kind === "error") running.error = true;
-      if (message.kind === "after") running.error = false; // cells below may do without
-      show(running, message.kind, message.text);
+      const { kind, text } = message;
+      if (kind === "names") {
+        if (!running.extra) running.news = JSON.parse(text);
+        return;
+      }
+      if (running.cancelled) return;
+      if (kind === "error" || kind === "stopped") running.failed = true;
+      if (kind === "after") running.failed = false; // cells below may do without
+      show(running, kind, text);
     }
+  }
+
+  // A figure was handled, and Python has its names: cells that take them follow.
+  function moved(names) {
+    const graph = follow.graph(cells);
+    for (const name of names)
+      for (const cell of cells) {
+        const { names: own } = cell;
+        if (!own.writes?.includes(name) && !own.perhaps?.includes(name)) continue;
+        for (const k of follow.readers(cells, graph, cell.place, new Set([name])))
+          if (cells[k].kind !== "answer" && cells[k] !== running) cells[k].stale = true;
+      }
+    mark();
+    clearTimeout(timer);
+    if (react.checked) timer = setTimeout(followUp, 500);
+  }
+
+  // The worker is gone: the page goes on, and the next run has another one.
+  function lost(why) {
+    clearTimeout(asking);
+    progress.hidden = true;
+    drop();
+    ended();
+    if (running) {
+      running.told.append(note("lost", why));
+      released(running);
+      if (!running.extra) running.failed = true;
+    }
+    running = undefined;
+    document.documentElement.dataset.live = "idle";
+    say(`Python ${ready ? "broke off" : "did not start"}: ${why}.`);
+    mark();
+  }
+
+  function released(cell, told = "") {
+    cell.el.classList.remove("live-running");
+    cell.gauge?.remove();
+    if (cell.time) cell.time.textContent = told;
+  }
+
+  // The next cell, after the cells above that have to run before it: what it needs of them is not
+  // in this worker yet, or was changed in place since.
+  function prepared() {
+    for (let tries = 0; tries < 1000; tries++) {
+      const cell = [...waiting].sort((a, b) => a.place - b.place)[0];
+      if (!cell) return undefined;
+      const those = cell.extra ? cells.with(cell.place, cell) : cells;
+      const graph = follow.graph(those);
+      const lists = [...graph[cell.place].from.values()].flat();
+      const missing = lists.map((k) => cells[k]).filter((c) => !c.turn && !waiting.has(c));
+      const bad = missing.length || cell.extra ? undefined : spoiled(graph, cell.place);
+      if (!missing.length && !bad) return cell;
+      for (const one of missing) waiting.add(one);
+      if (bad) for (const one of bad) waiting.add(one);
+    }
+    return undefined;
+  }
+
+  function spoiled(graph, place) {
+    const found = follow.spoiled(graph, place, cells.map((c) => c.turn));
+    if (!found) return undefined;
+    const { maker, name } = found;
+    cells[maker].turn = 0;
+    const others = cells.filter((_, k) => {
+      const { changes, from } = graph[k];
+      return k > maker && changes.has(name) && from.get(name)?.at(-1) === maker && cells[k].turn;
+    });
+    return [cells[maker], ...others];
   }
 
   function next() {
     if (!ready || running) return;
-    running = waiting.shift();
-    if (!running) return;
-    fresh(running);
-    running.el.classList.add("live-running");
-    if (running.time) running.time.textContent = "running …";
-    say(`Running ${running.name} of ${cells.length} …`);
-    worker.postMessage({ run: running.name, source: running.area?.value ?? running.source });
+    running = prepared();
+    if (!running) {
+      document.documentElement.dataset.live = "idle";
+      return;
+    }
+    waiting.delete(running);
+    const cell = running;
+    cell.sent = text(cell);
+    cell.quiet = !cell.asked && !cell.stale && !cell.failed && cell.sent === cell.shown && !cell.widget;
+    cell.failed = cell.cancelled = cell.stopping = false;
+    cell.news = undefined;
+    cell.said = "";
+    if (!cell.quiet) fresh(cell);
+    cell.el.classList.add("live-running");
+    if (cell.time && !cell.quiet) cell.time.textContent = "running …";
+    say(`Running ${cell.name} of ${cells.length} …`);
+    host?.flush();
+    const above = cells.slice(0, cell.place).filter((c) => c.turn).map((c) => c.name);
+    const how = { keep: !cell.extra, quiet: cell.quiet };
+    worker.postMessage({ run: cell.name, source: cell.sent, above, how });
+    if (interrupts) interrupts[0] = 0;
+    const mine = worker; // an idle worker answers at once: or it is no more
+    asking = setTimeout(() => mine === worker && lost("it does not answer"), 30_000);
   }
 
-  function finish({ seconds }) {
+  function finish({ seconds, ok }) {
     const cell = running;
     running = undefined;
+    clearTimeout(asking);
     progress.hidden = true;
-    cell.el.classList.remove("live-running");
-    if (cell.time) cell.time.textContent = `${seconds.toFixed(1)} s`;
-    if (cell.error) waiting = [];
-    const isOpen = (c) => c.kind === "open";
-    const rest = isOpen(cell) && cells.slice(cells.indexOf(cell) + 1).some(isOpen);
-    const below = rest ? " Cells below show what they showed before: “Run all”." : "";
-    if (!waiting.length)
-      say(cell.error ? `An error in ${cell.name}.` : `${cell.name.replace("c", "C")} has run.${below}`);
-    document.documentElement.dataset.live = waiting.length ? "running" : "idle";
+    released(cell, cell.quiet ? cell.time?.textContent : `${seconds.toFixed(1)} s`);
+    if (cell.cancelled && !ok) {
+      cell.stale = true;
+      cell.turn = 0;
+      if (spread && !cell.extra) waiting.add(cell);
+    } else if (!cell.extra) settled(cell);
+    if (cell.failed) drop();
+    cell.asked = false;
+    const count = mark();
+    const marked = count ? ` ${count} cells may show what came before your change.` : "";
+    if (!waiting.size)
+      say(
+        cell.failed
+          ? `${cell.stopping ? "Stopped" : "An error"} in ${cell.name}.${marked}`
+          : `${cell.name.replace(/^./, (c) => c.toUpperCase())} has run.${marked}`,
+      );
     next();
   }
 
-  function enqueue(more) {
+  // What a cell gave to names, against what it gave before: cells below take what differs.
+  function settled(cell) {
+    const before = cell.shown;
+    cell.turn = ++turns;
+    cell.shown = cell.sent;
+    cell.stale = false;
+    if (cell.kind === "check" && cell.said.startsWith("Right")) {
+      const { id } = cells[cell.place - 1];
+      if (!mine.solved.includes(id)) mine.solved.push(id);
+      remember();
+    }
+    const { prints, altered, ...names } = cell.news ?? {};
+    if (!prints) return; // no Python: nothing ran
+    const old = cell.prints ?? (before === cell.sent ? prints : {});
+    const given = new Set([...Object.keys(old), ...Object.keys(prints), ...altered]);
+    const fine = (name) => cell.prints === undefined && before === cell.sent;
+    cell.names = names;
+    cell.altered = altered;
+    cell.prints = prints;
+    const graph = follow.graph(cells);
+    const remade = new Set();
+    for (const [k, { from, changes }] of graph.entries())
+      for (const name of changes)
+        if (k > cell.place && from.get(name)?.includes(cell.place) && cells[k].turn) {
+          remade.add(name);
+          if (spread || cell.quiet) waiting.add(cells[k]);
+        }
+    const differs = new Set(
+      [...given].filter((name) => !fine(name) && (!prints[name] || prints[name] !== old[name])),
+    );
+    if (!cell.quiet) for (const name of remade) differs.add(name);
+    else for (const name of [...differs]) if (!prints[name]) differs.delete(name);
+    for (const k of follow.readers(cells, graph, cell.place, differs)) {
+      const one = cells[k];
+      if (one.asked && waiting.has(one)) continue;
+      if (one.kind === "answer" || one.needs) continue;
+      one.stale = true;
+      if (spread) waiting.add(one);
+    }
+  }
+
+  function enqueue(more, on = false) {
     document.documentElement.dataset.live = "running";
     kept = "";
-    waiting = [...(waiting ?? []), ...more];
+    spread = on;
+    for (const cell of more) {
+      cell.asked = true;
+      waiting.add(cell);
+    }
     if (!worker) boot();
     next();
   }
 
-  // A worker that computes hears nothing: it is ended, and another one takes its place.
-  function stopped(told = "Stopped. Python starts afresh: “Run to here” runs the cells above, too.") {
-    worker?.terminate();
-    running?.el.classList.remove("live-running");
-    if (running?.time) running.time.textContent = "stopped";
+  // Ask what runs to stop. A worker hears it where memory is shared, or where a training looks up.
+  function ask() {
+    if (interrupts) interrupts[0] = 2;
+    else worker?.postMessage({ stop: true });
+    return interrupts || running.hears;
+  }
+
+  // What runs is out of date. It may end by itself; it has as long as a restart would take.
+  function cancel() {
+    drop();
+    const cell = running;
+    if (cell.cancelled) return;
+    cell.cancelled = true;
+    ask();
+    const mine = worker;
+    setTimeout(() => {
+      if (mine !== worker || running !== cell || !cell.cancelled) return;
+      cell.stale = true;
+      if (!cell.extra) waiting.add(cell);
+      restart();
+    }, patience);
+  }
+
+  function restart(told = "") {
+    ended();
+    clearTimeout(asking);
+    if (running) released(running, told);
     running = undefined;
-    waiting = [];
-    kept = told;
     boot();
+  }
+
+  function halt() {
+    clearTimeout(timer);
+    drop();
+    const cell = running;
+    if (!cell) return ready || asBefore();
+    cell.stopping = true;
+    const end = () => {
+      if (running !== cell) return;
+      cell.told.append(note("ended"));
+      if (!cell.extra) cell.failed = true;
+      kept = "Stopped. Python starts afresh.";
+      restart("stopped");
+      mark();
+      document.documentElement.dataset.live = "idle";
+    };
+    if (ask()) setTimeout(end, 3000);
+    else end();
+  }
+
+  // Stopped before Python was there: what was to be run waits for a click.
+  function asBefore() {
+    for (const cell of cells) cell.asked = false;
+    kept = "Stopped. Python is being loaded, and nothing runs.";
+    say(kept);
     document.documentElement.dataset.live = "idle";
   }
 
@@ -377,7 +902,7 @@
       return;
     }
     cells.forEach(open);
-    begin.replaceWith(all, stop, reset);
+    begin.replaceWith(follows, all, stop, reset, reacts);
     bar.classList.add("live-on");
     bar.after(
       make(
@@ -387,6 +912,7 @@
       ),
     );
     all.focus();
-    enqueue(cells);
+    mark();
+    enqueue(cells, true);
   }
 })();

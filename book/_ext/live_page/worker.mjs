@@ -19,7 +19,9 @@ self.fetch = async (...request) => {
   return new Response(answer.body.pipeThrough(count), { headers, status });
 };
 
-const MODULES = ["absent.py", "kernel.py"];
+const MODULES = ["absent.py", "names.py", "kernel.py"];
+// Modules of this site that stand in for others.
+const INSTEAD = ["torch", "anywidget", "ipywidgets", "IPython"];
 let python, kernel, packages;
 
 async function file(path) {
@@ -46,7 +48,31 @@ async function start(data) {
   );
   python.runPython("import sys; sys.path.insert(0, '/book'); import absent; absent.start()");
   kernel = python.pyimport("kernel");
+  kernel.start(python.runPython(PAUSE));
+  kernel.page = (text, buffers) => tell({ widget: JSON.parse(text), buffers: buffers.toJs() });
 }
+
+// While a training runs, its progress bar looks up: a page that is isolated from other sites shares
+// memory with the worker, and else a browser with JSPI lets the worker hear its messages meanwhile.
+let wanted = false;
+self.stopWanted = () => {
+  const stop = wanted;
+  wanted = false;
+  return stop;
+};
+const PAUSE = `
+import asyncio, js
+from pyodide.ffi import can_run_sync, run_sync
+
+def pause():
+    if can_run_sync():
+        run_sync(asyncio.sleep(0))
+        if js.stopWanted():
+            raise KeyboardInterrupt
+        return True
+
+pause
+`;
 
 const quiet = { messageCallback() {}, errorCallback() {} };
 
@@ -55,6 +81,10 @@ const asked = new Set();
 async function get(module) {
   if (asked.has(module)) return false;
   asked.add(module);
+  if (INSTEAD.includes(module)) {
+    python.FS.writeFile(`/book/${module}.py`, new Uint8Array(await file(`instead/${module}.py`)));
+    return true;
+  }
   if (module === "workshop" || module === "beyond") {
     python.unpackArchive(await file("workshop.zip"), "zip", { extractDir: "/book" });
     return true;
@@ -65,16 +95,34 @@ async function get(module) {
   return true;
 }
 
-self.onmessage = async ({ data: { start: data, run, source } }) => {
+// One message after the other, also where Python waits for a package.
+let last = Promise.resolve();
+self.onmessage = ({ data }) => {
+  if (data.stop) wanted = true;
+  else last = last.then(() => act(data));
+};
+
+async function act({ start: data, interrupts, run, source, above, how, widget, buffers }) {
   try {
+    if (widget) {
+      const names = JSON.parse(kernel.heard(widget, buffers));
+      return names.length && tell({ kind: "moved", names });
+    }
     if (data) {
       await start(data);
+      if (interrupts) python.setInterruptBuffer(interrupts);
       return tell({ ready: true });
     }
+    wanted = false;
+    tell({ began: run });
     const began = performance.now();
-    const ok = await kernel.run(source, run, (kind, text) => tell({ run, kind, text }), get);
+    const show = (kind, text) => tell({ run, kind, text });
+    const ok = await kernel.run.callKwargs(source, run, show, get, {
+      above: python.toPy(above ?? null),
+      ...how,
+    });
     tell({ run, done: true, ok, seconds: (performance.now() - began) / 1000 });
   } catch (error) {
     tell({ failed: `${error.message ?? error}` });
   }
-};
+}

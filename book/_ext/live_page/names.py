@@ -1,0 +1,363 @@
+"""*Run this page*: the names that a cell takes from the cells above, and gives to those below.
+
+By its code alone, before it runs; rather a name too many than one too few.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Collection
+from dataclasses import dataclass, field
+
+IN_PLACE = frozenset(
+    "add append appendleft clear discard extend fill insert load_state_dict pop popitem popleft "
+    "put remove resize reverse seed set setdefault setflags shuffle sort step train update "
+    # a generator of random numbers goes on with each draw
+    "beta binomial choice exponential gamma integers multivariate_normal normal permutation "
+    "permuted poisson random standard_normal uniform".split()
+)
+"""Methods by which an object changes, or gives something else at the next call."""
+
+HARMLESS = frozenset({"print", "len", "repr", "display"})
+FUNCTIONS = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
+SCOPES = FUNCTIONS | ast.ClassDef
+COMPREHENSIONS = ast.ListComp | ast.SetComp | ast.DictComp | ast.GeneratorExp
+
+
+@dataclass
+class Names:
+    """What a cell does with the names that all cells share.
+
+    Attributes
+    ----------
+    reads : set of str
+        What has to be there before; with what its functions read when they are called.
+    writes : set of str
+        What it binds whenever it runs through.
+    perhaps : set of str
+        What it binds or deletes in one case and not in another.
+    changes : set of str
+        What it may change in place.
+    imports : set of str
+        What it binds by an import: a module, a function, a class, a constant.
+    carries, alters : dict of str to set of str
+        What its functions read, and change in place, when they are called from below: by the names
+        in which they are to be had.
+    holds : dict of str to set of str
+        What a name was made from, of the names that were there before.
+    """
+
+    reads: set[str] = field(default_factory=set)
+    writes: set[str] = field(default_factory=set)
+    perhaps: set[str] = field(default_factory=set)
+    changes: set[str] = field(default_factory=set)
+    imports: set[str] = field(default_factory=set)
+    carries: dict[str, set[str]] = field(default_factory=dict)
+    alters: dict[str, set[str]] = field(default_factory=dict)
+    holds: dict[str, set[str]] = field(default_factory=dict)
+
+    def told(self) -> dict:
+        """For the page, without what is empty."""
+        told = {}
+        for kind, found in vars(self).items():
+            if isinstance(found, dict):
+                found = {name: sorted(of) for name, of in sorted(found.items()) if of}
+            if found:
+                told[kind] = found if isinstance(found, dict) else sorted(found)
+        return told
+
+
+def names(source: str, imported: Collection[str] = ()) -> Names:
+    """The names of a cell, below cells that imported some; none of a cell that is no Python."""
+    try:
+        body = ast.parse(source).body
+    except (SyntaxError, ValueError):
+        return Names()
+    cell = _Cell(imported)
+    cell.statements(body)
+    cell.close()
+    return cell.told
+
+
+class _Cell(ast.NodeVisitor):
+    """Goes through statements as they run, and knows what is bound by then."""
+
+    def __init__(self, imported: Collection[str]):
+        self.told = Names()
+        self.imported = set(imported)
+        self.sure: list[set[str]] = [set()]  # bound by now, in each branch around
+
+    def statements(self, body):
+        for node in body:
+            self.visit(node)
+            self.hold(node)
+
+    def hold(self, node):
+        """What its names are made from by a statement."""
+        if isinstance(node, SCOPES):
+            return
+        headers = [node]
+        if isinstance(node, ast.For | ast.AsyncFor):
+            headers = [node.target, node.iter]
+        elif isinstance(node, ast.With | ast.AsyncWith):
+            headers = node.items
+        elif hasattr(node, "body"):
+            return
+        nodes = [each for header in headers for each in ast.walk(header)]
+        loads = {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}
+        for name in set().union(*map(_stored, nodes)):
+            self.told.holds.setdefault(name, set()).update(loads - {name})
+            for inner in (_Function(n) for n in nodes if isinstance(n, ast.Lambda)):
+                self.told.carries.setdefault(name, set()).update(inner.reads)
+                self.told.alters.setdefault(name, set()).update(inner.changes - self.imported)
+
+    def close(self):
+        """Take what names hold through each other together; keep what the page can use."""
+        told = self.told
+        given = told.writes | told.perhaps | told.changes
+        reached = {}
+        for name in given:
+            found, new = set(), {name}
+            while new:
+                found |= new
+                new = set().union(*(told.holds.get(n, ()) for n in new)) - found
+            reached[name] = found
+        for kind in ("carries", "alters"):
+            own = getattr(told, kind)
+            total = {n: set().union(*(own.get(m, ()) for m in reached[n])) for n in given}
+            setattr(told, kind, {n: of for n, of in total.items() if of})
+        held = {n: (reached[n] & told.reads) - {n} for n in given}
+        told.holds = {n: of for n, of in held.items() if of}
+
+    def branch(self, *bodies):
+        """Bodies of which each may run or not: what they bind is bound perhaps."""
+        for body in bodies:
+            self.sure.append(set(self.sure[-1]))
+            self.statements(body)
+            self.sure.pop()
+
+    def read(self, name):
+        if name not in self.sure[-1]:
+            self.told.reads.add(name)
+
+    def write(self, name):
+        (self.told.writes if len(self.sure) == 1 else self.told.perhaps).add(name)
+        self.sure[-1].add(name)
+        self.imported.discard(name)
+
+    def change(self, name):
+        """In place: it had to be there, and is another one afterwards. Modules stay as they are."""
+        if name not in self.sure[-1] and name not in self.imported:
+            self.told.reads.add(name)
+            self.told.changes.add(name)
+
+    # --- names ---
+    def visit_Name(self, node):
+        (self.read if isinstance(node.ctx, ast.Load) else self.write)(node.id)
+        if isinstance(node.ctx, ast.Del):
+            self.told.perhaps.add(node.id)
+
+    def visit_alias(self, node):
+        name = node.asname or node.name.partition(".")[0]
+        self.write(name)
+        self.imported.add(name)
+        self.told.imports.add(name)
+
+    def visit_Assign(self, node):
+        self.visit(node.value)
+        for target in node.targets:
+            self.visit(target)
+
+    def visit_AnnAssign(self, node):
+        if node.value is not None:
+            self.visit(node.value)
+            self.visit(node.target)
+
+    def visit_NamedExpr(self, node):
+        self.visit(node.value)
+        self.visit(node.target)
+
+    def visit_AugAssign(self, node):
+        self.visit(node.value)
+        for name in _bases(node.target):
+            self.change(name)
+        if isinstance(node.target, ast.Name):
+            self.write(node.target.id)
+        else:
+            self.generic_visit(node.target)
+
+    def _store(self, node):
+        if not isinstance(node.ctx, ast.Load):
+            for name in _bases(node):
+                self.change(name)
+        self.generic_visit(node)
+
+    visit_Attribute = visit_Subscript = _store
+
+    def visit_Expr(self, node):
+        """What a call is made for whose value nobody takes: a change of what it was given."""
+        call = node.value
+        self.generic_visit(node)
+        if not isinstance(call, ast.Call):
+            return
+        if isinstance(call.func, ast.Name) and call.func.id in HARMLESS:
+            return
+        method = isinstance(call.func, ast.Attribute)
+        if method and _bases(call.func) <= self.imported:
+            return  # a figure
+        given = [*call.args, *(keyword.value for keyword in call.keywords)]
+        for part in [call.func, *given] if method else given:
+            for name in _bases(part):
+                self.change(name)
+
+    def visit_Call(self, node):
+        self.generic_visit(node)
+        if isinstance(node.func, ast.Attribute) and node.func.attr in IN_PLACE:
+            for name in _bases(node.func):
+                self.change(name)
+                made_for = self.told.holds.get(name, ()) if node.func.attr == "step" else ()
+                for other in made_for:
+                    self.change(other)  # an optimiser takes its step with what it was made for
+
+    # --- what may run, or not, or again ---
+    def visit_If(self, node):
+        self.visit(node.test)
+        self.branch(node.body, node.orelse)
+
+    def visit_While(self, node):
+        self.visit(node.test)
+        self.branch(node.body, node.orelse)
+
+    def visit_For(self, node):
+        """Its body is taken to run at least once."""
+        self.visit(node.iter)
+        self.statements([node.target, *node.body, *node.orelse])
+
+    def visit_Try(self, node):
+        handlers = [[*([h.type] if h.type else []), *h.body] for h in node.handlers]
+        self.branch(node.body, *handlers, node.orelse)
+        self.statements(node.finalbody)
+
+    visit_TryStar = visit_Try
+
+    def visit_Match(self, node):
+        self.visit(node.subject)
+        self.branch(*([case.pattern, *case.body] for case in node.cases))
+
+    def visit_MatchAs(self, node):
+        if node.name:
+            self.write(node.name)
+        self.generic_visit(node)
+
+    visit_MatchStar = visit_MatchAs
+
+    # --- scopes of their own ---
+    def _inside(self, node):
+        """Names that a function's body shares with the cell, read and changed at a call."""
+        inner = _Function(node)
+        for name in inner.reads:
+            self.read(name)
+        if hasattr(node, "name"):
+            self.told.carries.setdefault(node.name, set()).update(inner.reads)
+            self.told.alters.setdefault(node.name, set()).update(inner.changes - self.imported)
+
+    def _function(self, node):
+        for part in [*getattr(node, "decorator_list", ()), *node.args.defaults]:
+            self.visit(part)
+        for part in filter(None, node.args.kw_defaults):
+            self.visit(part)
+        if hasattr(node, "name"):
+            self.write(node.name)
+        self._inside(node)
+
+    visit_FunctionDef = visit_AsyncFunctionDef = visit_Lambda = _function
+
+    def visit_ClassDef(self, node):
+        for part in [*node.decorator_list, *node.bases, *(k.value for k in node.keywords)]:
+            self.visit(part)
+        self.write(node.name)
+        self._inside(node)
+
+    def _comprehension(self, node):
+        inner = _Function(node)
+        for name in inner.reads:
+            self.read(name)
+        for name in inner.changes:
+            self.change(name)
+
+    visit_ListComp = visit_SetComp = visit_DictComp = visit_GeneratorExp = _comprehension
+
+
+class _Function:
+    """Names that a scope reads and changes and that are not its own."""
+
+    def __init__(self, node):
+        args = getattr(node, "args", None)
+        own = set()
+        if args is not None:
+            every = [*args.posonlyargs, *args.args, *args.kwonlyargs, args.vararg, args.kwarg]
+            own = {arg.arg for arg in every if arg is not None}
+        if isinstance(node, COMPREHENSIONS):
+            parts = list(ast.iter_child_nodes(node))
+        else:
+            parts = node.body if isinstance(node.body, list) else [node.body]
+        shared, loads, self.changes, inner = set(), set(), set(), []
+        stack = list(parts)
+        while stack:
+            each = stack.pop()
+            if isinstance(each, SCOPES):
+                inner.append(each)
+                if hasattr(each, "name"):
+                    own.add(each.name)
+                outer = [*getattr(each, "decorator_list", ()), *getattr(each, "bases", ())]
+                if not isinstance(each, ast.ClassDef):
+                    outer += [*each.args.defaults, *filter(None, each.args.kw_defaults)]
+                stack += outer
+                continue
+            if isinstance(each, COMPREHENSIONS):
+                inner.append(each)
+                continue
+            if isinstance(each, ast.Global):
+                shared |= set(each.names)
+            elif isinstance(each, ast.Name):
+                (loads if isinstance(each.ctx, ast.Load) else own).add(each.id)
+            elif isinstance(each, ast.alias):
+                own.add(each.asname or each.name.partition(".")[0])
+            elif isinstance(each, ast.ExceptHandler | ast.MatchAs | ast.MatchStar) and each.name:
+                own.add(each.name)
+            elif isinstance(each, ast.Attribute | ast.Subscript):
+                if not isinstance(each.ctx, ast.Load):
+                    self.changes |= _bases(each)
+            elif isinstance(each, ast.Call) and isinstance(each.func, ast.Attribute):
+                if each.func.attr in IN_PLACE:
+                    self.changes |= _bases(each.func)
+            stack += ast.iter_child_nodes(each)
+        for scope in map(_Function, inner):
+            loads |= scope.reads
+            self.changes |= scope.changes
+        own -= shared
+        self.reads = (loads | shared) - own
+        self.changes = (self.changes | shared) - own
+
+
+def _bases(node) -> set[str]:
+    """The name of which a part is meant: `a` of `a.b[0].c()`."""
+    while True:
+        if isinstance(node, ast.Subscript | ast.Attribute | ast.Starred):
+            node = node.value
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+            node = node.func
+        else:
+            break
+    if isinstance(node, ast.Tuple | ast.List):
+        return set().union(*map(_bases, node.elts))
+    return {node.id} if isinstance(node, ast.Name) else set()
+
+
+def _stored(node) -> set[str]:
+    """Names that a node binds or changes in place."""
+    if isinstance(node, ast.Name | ast.Attribute | ast.Subscript):
+        return set() if isinstance(node.ctx, ast.Load) else _bases(node)
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+        return _bases(node.func) if node.func.attr in IN_PLACE else set()
+    return set()
