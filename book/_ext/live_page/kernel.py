@@ -324,8 +324,10 @@ def heard(text: str, buffers) -> str:
             out.write(f"{type(error).__name__}: {error}\n")
     out.flush()
     page(json.dumps({**told, "applied": True}), [])
-    names = [name for name, value in space.items() if widget is not None and value is widget]
-    return json.dumps(names)
+    if widget is None:
+        return "[]"
+    each = [*made.values(), space]
+    return json.dumps(sorted({n for one in each for n, value in one.items() if value is widget}))
 
 
 def _svg(figure) -> str:
