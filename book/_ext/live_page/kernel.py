@@ -19,7 +19,7 @@ import sys
 import time
 import traceback
 import types
-from contextlib import redirect_stderr, redirect_stdout, suppress
+from contextlib import nullcontext, redirect_stderr, redirect_stdout, suppress
 
 from names import Names, names
 
@@ -185,6 +185,10 @@ class Progress:
 
     def __exit__(self, *error):
         self.close()
+
+    @staticmethod
+    def get_lock():
+        return nullcontext()
 
     def __getattr__(self, name):
         if name.startswith("_"):
