@@ -280,6 +280,15 @@ def test_what_is_left_out_of_a_widget_has_its_place():
     assert callable(module.still_picture)
 
 
+def test_training_runs_with_the_progress_bar_of_a_page(monkeypatch):
+    data = TrainingSet.from_recording(JOINT_DAMPING.record([(30, 20), (10, 40), (45, 5)]), 11)
+    module = importlib.import_module("ddlib.learning.descent")
+    monkeypatch.setattr(module, "tqdm", kernel.Progress)
+    start = Weights.random(1, 11, 3, seed=1)
+    _, history, _ = module.train_ensemble(start, data, epochs=60, progress=False)
+    assert len(history.epochs)
+
+
 def test_a_cell_that_imports_pytorch_says_what_stands_in_for_it():
     for source in ("import torch", "from torch import nn", "import torch.nn as n"):
         assert kernel._twin(ast.parse(source))

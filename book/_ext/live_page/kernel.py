@@ -19,7 +19,7 @@ import sys
 import time
 import traceback
 import types
-from contextlib import redirect_stderr, redirect_stdout, suppress
+from contextlib import nullcontext, redirect_stderr, redirect_stdout, suppress
 
 from names import Names, names
 
@@ -186,6 +186,10 @@ class Progress:
     def __exit__(self, *error):
         self.close()
 
+    @staticmethod
+    def get_lock():
+        return nullcontext()
+
     def __getattr__(self, name):
         if name.startswith("_"):
             raise AttributeError(name)
@@ -324,8 +328,10 @@ def heard(text: str, buffers) -> str:
             out.write(f"{type(error).__name__}: {error}\n")
     out.flush()
     page(json.dumps({**told, "applied": True}), [])
-    names = [name for name, value in space.items() if widget is not None and value is widget]
-    return json.dumps(names)
+    if widget is None:
+        return "[]"
+    each = [*made.values(), space]
+    return json.dumps(sorted({n for one in each for n, value in one.items() if value is widget}))
 
 
 def _svg(figure) -> str:
