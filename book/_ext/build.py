@@ -9,36 +9,38 @@ it has read before; executed notebooks come from a cache. The stamp is written l
 a clean build lets the next call say "nothing changed".
 """
 
-# ruff: noqa: E402
-
 from __future__ import annotations
 
 import argparse
+import gc
 import json
+import logging
 import os
 import re
 import shutil
-import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from concurrent.futures import ThreadPoolExecutor, wait
+from contextlib import contextmanager
 from pathlib import Path
 
-# Imported with nbformat, it compiles a grammar of addresses for more than a second. Nothing here
-# asks for it: jsonschema goes without.
-sys.modules["rfc3987_syntax"] = None
+sys.path.insert(0, str(Path(__file__).parents[1]))  # for the workshop of the book
 
 import yaml
-from ahead import execute
 from dd_book import PAGE_INPUTS, cache_path, digest
 from dd_cite import edition
 from dd_failures import FAILURES, last_line, where
 from dd_public import repository, site
+from jupyter_book.sphinx import build_sphinx
 from jupyter_cache import get_cache
+from jupyter_cache.executors import load_executor
 from sphinx.util.console import strip_colors
 
 from workshop.report.evidence.claims import SHARED
+
+TIMEOUT = 600  # seconds for one cell, as in _config.yml
+PAUSE = 10  # seconds between two lines of progress
 
 # ipykernel says this at every start, of a kernel on the same machine.
 NOISE = "Kernel is running over TCP without encryption"
@@ -49,30 +51,61 @@ NOTEBOOK_FAILED = "Executing notebook failed"
 CRASHES = ("Exception occurred:", "Extension error", "Sphinx error:", "Theme error:")
 
 
-def made_ready(root: Path, strict: bool) -> subprocess.Popen:
-    """Jupyter Book in a process of its own, which imports what it needs and waits."""
-    command = [sys.executable, Path(__file__).with_name("pages.py"), "build", root]
-    options = ["-W", "-n", "--keep-going"] if strict else []
-    return subprocess.Popen(
-        [*command, *options], stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
+def execute(cache, paths: list[Path], say=print) -> list[Path]:
+    """Execute on all cores the notebooks that the cache does not know, and keep them there.
 
+    What fails in a cell is not kept: the build meets it again, shows what came before and reports
+    it.
 
-def build(root: Path, process: subprocess.Popen, ended: list[str]) -> tuple[int, list[str]]:
-    """Let Jupyter Book write the pages, of which some are not to be executed again.
+    Parameters
+    ----------
+    cache : jupyter_cache.base.JupyterCacheAbstract
+    paths : list of Path
+        Of notebooks.
+    say : callable
+        Called with a line of progress every `PAUSE` seconds or so, and at the end.
 
-    Returns its exit status and what it complained about, a message an entry.
+    Returns
+    -------
+    list of Path
+        Notebooks whose kernel ended.
     """
-    lines = []
-    with suppress(BrokenPipeError):  # it ended before: its status and its messages tell
-        process.stdin.write(json.dumps(ended) + "\n")
-        process.stdin.close()
-    for line in process.stderr:
-        if NOISE not in line:
-            lines.append(strip_colors(line))
-    with log(root).open("a", encoding="utf-8") as file:
-        file.writelines(lines)
-    return process.wait(), messages(lines)
+    for path in paths:
+        cache.add_nb_to_project(str(path))
+    names = list(map(str, paths))
+    wanted = len(cache.list_unexecuted(filter_uris=names))
+    before, started = len(cache.list_cache_records()), time.monotonic()
+    logger = logging.getLogger("notebooks")
+    logger.setLevel(logging.WARNING)
+    run = load_executor("local-parallel", cache, logger).run_and_cache
+    with ThreadPoolExecutor(1) as beside:
+        task = beside.submit(run, filter_uris=names, timeout=TIMEOUT)
+        left = {task}
+        while left:
+            _, left = wait(left, PAUSE)
+            count = len(cache.list_cache_records()) - before
+            say(f"    {count} of {wanted} notebooks after {time.monotonic() - started:.0f} s")
+    return list(map(Path, task.result().errored))
+
+
+def write_pages(root: Path, strict: bool, ended: list[str]) -> int:
+    """Let Jupyter Book write the pages on all cores, of which some are not to be executed again.
+
+    Returns 0 if it wrote them all, and found no fault that counts.
+    """
+    told = {
+        "external_toc_path": (root / "_toc.yml").as_posix(),
+        "latex_individualpages": False,
+        "nitpicky": strict,
+        "kernel_ended": ended,
+    }
+    gc.disable()  # the pages are trees of many nodes: to search them would take a fifth of the time
+    outcome = build_sphinx(
+        *(root, root / "_build" / "html"),
+        **dict(path_config=root / "_config.yml", noconfig=True, confoverrides=told),
+        **dict(warningiserror=strict, keep_going=strict, jobs=os.cpu_count()),
+    )
+    return int(isinstance(outcome, Exception) or outcome)
 
 
 def log(root: Path) -> Path:
@@ -95,20 +128,6 @@ def messages(lines: list[str]) -> list[str]:
     return [text for text in found if text.strip() and not text.startswith(TRACEBACK)]
 
 
-def execute_ahead(root: Path, folder: Path) -> list[str]:
-    """Execute on all cores the notebooks that the build would otherwise execute one by one.
-
-    What fails here is not kept: the build meets it again, shows what came before and reports it.
-    Returns the pages whose kernel ended, which are left out there.
-    """
-    pages = yaml.safe_load((root / "_toc.yml").read_text(encoding="utf-8"))
-    paths = [root / f"{page}.ipynb" for page in listed(pages)]  # the ledger after the chapters
-    with errors_into(log(root)):
-        done, ended = execute(get_cache(str(folder)), [p for p in paths if p.is_file()], progress)
-    print(f"==> Executed {len(done)} notebooks", flush=True)
-    return [path.relative_to(root).with_suffix("").as_posix() for path in ended]
-
-
 def taught(root: Path) -> set[str]:
     """Pages of the lectures, if the book has some."""
     path = root / "book" / "lectures.yml"
@@ -127,9 +146,9 @@ def listed(contents) -> Iterator[str]:
 
 @contextmanager
 def errors_into(path: Path) -> Iterator[None]:
-    """What this process and its kernels write to standard error goes to a file."""
+    """What this process and its kernels write to standard error is added to a file."""
     kept = os.dup(2)
-    with path.open("w", encoding="utf-8") as file:
+    with path.open("a", encoding="utf-8") as file:
         os.dup2(file.fileno(), 2)
         try:
             yield
@@ -203,12 +222,21 @@ def main(root: Path, strict: bool) -> int:
         os.environ["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"
         os.environ["DDLIB_PNG"] = " ".join(taught(root))  # figures as PNG, for dd_figures
         os.environ.setdefault(SHARED, str(folder / "measured"))  # chapters and ledger share claims
-        with made_ready(root, strict) as pages:
-            ended = execute_ahead(root, folder)
-            for stale in (html, root / "_build" / ".doctrees"):
-                shutil.rmtree(stale, ignore_errors=True)
-            (root / "_build" / FAILURES).unlink(missing_ok=True)
-            status, found = build(root, pages, ended)
+        toc = yaml.safe_load((root / "_toc.yml").read_text(encoding="utf-8"))
+        paths = [root / f"{page}.ipynb" for page in listed(toc)]  # the ledger after the chapters
+        log(root).write_text("")
+        with errors_into(log(root)):
+            paths = [path for path in paths if path.is_file()]
+            dead = execute(get_cache(str(folder)), paths, progress)
+        for stale in (html, root / "_build" / ".doctrees"):
+            shutil.rmtree(stale, ignore_errors=True)
+        (root / "_build" / FAILURES).unlink(missing_ok=True)
+        before = log(root).stat().st_size
+        with errors_into(log(root)):
+            ended = [path.relative_to(root).with_suffix("").as_posix() for path in dead]
+            status = write_pages(root, strict, ended)
+        told = strip_colors(log(root).read_bytes()[before:].decode()).splitlines(keepends=True)
+        found = messages([line for line in told if NOISE not in line])
         report(root, found, strict)
         failed = bool(status or failures(root) or (strict and found))
         if status and not found:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import fields, is_dataclass
-from pathlib import Path
 
 from docutils import nodes
 from sphinx import addnodes
@@ -78,25 +77,11 @@ def shorten_values(app, doctree):
             node += nodes.Text(f" {short}")
 
 
-def leave_sources(app, env, docnames):
-    """Tell `sphinx.ext.viewcode` that there is no source of any other module."""
-    root = Path(app.srcdir)
-    tops = (root, "ddlib"), (root / "book", "workshop"), (root / "book", "beyond")
-    paths = [p.relative_to(top) for top, name in tops for p in top.glob(f"{name}/**/*.py")]
-    names = (".".join(path.with_suffix("").parts).removesuffix(".__init__") for path in paths)
-    known = getattr(env, "_viewcode_modules", {})
-    env._viewcode_modules = known | {name: False for name in names if not name.startswith(SHOWN)}
-
-
-def forget_others(app):
-    """Before the pages are collected: what has no page is nobody's parent.
-
-    Nor have other libraries, whose names ours hand on.
-    """
-    known = getattr(app.env, "_viewcode_modules", {})
-    own = {name: entry for name, entry in known.items() if entry and name.startswith(SHOWN)}
-    app.env._viewcode_modules = own
-    return []
+def leave_sources(app, doctree):
+    """Name no module to `sphinx.ext.viewcode`, which comes next, whose source has no page."""
+    for signature in doctree.findall(addnodes.desc_signature):
+        if not signature.get("module", "").startswith(SHOWN):
+            signature["module"] = ""
 
 
 def setup(app):
@@ -105,6 +90,5 @@ def setup(app):
     app.connect("autodoc-process-docstring", hide_colon, priority=100)
     app.connect("autodoc-process-docstring", show_colon, priority=900)
     app.connect("doctree-read", shorten_values)
-    app.connect("env-before-read-docs", leave_sources)
-    app.connect("html-collect-pages", forget_others, priority=100)
+    app.connect("doctree-read", leave_sources, priority=400)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -4,19 +4,13 @@ from __future__ import annotations
 
 import glob
 import shutil
-import sqlite3
 import sys
-from functools import cache, partial, wraps
 from importlib.metadata import files
 from pathlib import Path
 
 import joblib
-from jupyter_cache.cache import db
-from pybtex import plugin
+import patches  # noqa: F401
 from slim import slim
-from sphinx import addnodes, builders
-from sphinx.environment.adapters import toctree
-from sphinx.util.parallel import make_chunks
 
 sys.path.insert(0, str(Path(__file__).parents[1]))  # for the workshop of the book
 
@@ -28,7 +22,6 @@ KINDS = {
     *(".js", ".mjs", ".css", ".svg", ".png", ".cff"),
 }
 KEPT_CACHES = 3
-SMALL = 1  # a batch has the root of so many times the pages that fall to a process
 
 # What a notebook's outcome depends on beside its own cells, and what the pages depend on.
 # Questions for readers (quizzes.yml) are the pages' alone.
@@ -63,19 +56,6 @@ def sources(root: Path, patterns: tuple[str, ...]) -> dict[str, Path]:
 def cache_path(root: Path, build: Path) -> Path:
     """Where executed notebooks are kept: keyed by the code and data they import and read."""
     return build / ".jupyter_cache" / digest(root, CELL_INPUTS)
-
-
-_open = db.create_engine
-
-
-def open_by_path(address: str):
-    """The cache's database by its path: in an address, "?" and "%" would not be the folder's."""
-    path = address.removeprefix("sqlite:///")
-    connect = partial(sqlite3.connect, path, check_same_thread=False)
-    return _open("sqlite:///by-its-path", creator=connect)
-
-
-db.create_engine = open_by_path
 
 
 def set_cache_path(app, config):
@@ -118,47 +98,9 @@ def copy_mathjax(app):
 def read_side_by_side(app, env, names):
     """Pages are read on all cores.
 
-    Two extensions of Jupyter Book do not say that they are safe: one acts after all pages are
-    read, one on LaTeX alone.
+    One extension of Jupyter Book does not say that it is safe: it acts when all pages are read.
     """
-    for name in ("sphinx_multitoc_numbering", "sphinx_jupyterbook_latex"):
-        if name in app.extensions:
-            app.extensions[name].parallel_read_safe = True
-
-
-def deal(app, env, names):
-    """Pages that document much code take long to read: not all of them in one batch."""
-    texts = {name: Path(env.doc2path(name)).read_text(encoding="utf-8") for name in names}
-    names.sort(key=lambda name: (-texts[name].count("automodule"), -len(texts[name])))
-    batches = len(builders.make_chunks(names, app.parallel))
-    names[:] = [name for k in range(batches) for name in names[k::batches]]
-
-
-def work_in_small_batches(app):
-    """One batch of pages is written while the next is made ready: the first comes soon."""
-    builders.make_chunks = partial(make_chunks, maxbatch=SMALL)
-
-
-def copy_titles_alone(app):
-    """The sidebar shows titles of pages: do not copy all their sections for it, on every page.
-
-    Sphinx copies them and drops them afterwards, which takes longer than to write the page.
-    """
-    usual = getattr(toctree, "_toctree_standard_entry", None)
-    if usual is None:  # another Sphinx: as right, and slower
-        return
-
-    @wraps(usual)
-    def entry(title, ref, maxdepth, toc, *options):
-        depth = maxdepth if any(toc.findall(addnodes.toctree)) else 1
-        return usual(title, ref, depth, toc, *options)
-
-    toctree._toctree_standard_entry = entry
-
-
-def look_up_plugins_once(app):
-    """A citation looks its style up among all installed packages: once for each name will do."""
-    plugin._load_entry_point = cache(plugin._load_entry_point)
+    app.extensions["sphinx_multitoc_numbering"].parallel_read_safe = True
 
 
 def slim_pages(app, exception):
@@ -171,10 +113,6 @@ def setup(app):
     app.connect("config-inited", set_cache_path)
     app.connect("config-inited", leave_out_unlisted, priority=910)  # the table has been read
     app.connect("builder-inited", copy_mathjax)
-    app.connect("builder-inited", copy_titles_alone)
-    app.connect("builder-inited", look_up_plugins_once)
     app.connect("env-before-read-docs", read_side_by_side)
-    app.connect("env-before-read-docs", deal)
-    app.connect("builder-inited", work_in_small_batches)
     app.connect("build-finished", slim_pages, priority=900)  # after the theme's own
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -7,7 +7,6 @@ not computed read as a question mark. `FAILURES` lists the pages for `build.py`.
 from __future__ import annotations
 
 import json
-import os
 import platform
 import re
 from importlib.metadata import PackageNotFoundError, version
@@ -20,18 +19,12 @@ from myst_nb.sphinx_ import NbMetadataCollector
 from sphinx.util.console import strip_colors
 
 FAILURES = "failures.json"  # in the folder above the pages
-UNEXECUTED = "DD_UNEXECUTED"  # pages without outputs, by the environment: ended kernels
 PACKAGES = ("numpy", "scipy", "torch", "matplotlib", "myst-nb")
 
 KERNEL_ENDED = "The Python process that executes the notebook ended, or did not start."
 RULE = re.compile(r"^-{10,}\n(.*?)^-{10,}$", re.MULTILINE | re.DOTALL)  # around a cell's source
 HYPHEN = re.compile(r"(?<![\w.])-(?=\d)")  # that stands for a minus sign
 EXCEPTION = re.compile(r"^(?:\w+\.)*(\w*(?:Error|Exception|Warning|Interrupt|Exit)\b.*)$", re.M)
-
-
-def unexecuted() -> list[str]:
-    """Pages whose notebooks are not to be executed again."""
-    return json.loads(os.environ.get(UNEXECUTED, "[]"))
 
 
 def failing_cell(traceback: str, cells: list) -> tuple[int, str]:
@@ -61,7 +54,7 @@ def last_line(traceback: str) -> str:
 def described(env, page: str) -> dict | None:
     """What failed on a page, or None."""
     done = NbMetadataCollector.get_doc_data(env).get(page, {}).get("exec_data") or {}
-    if page in unexecuted():
+    if page in env.config.kernel_ended:
         return {"page": page, "cell": 0, "begins": "", "error": KERNEL_ENDED}
     if done.get("succeeded", True):
         return None
@@ -138,7 +131,7 @@ class NumberOrGap(PasteTextRole):
 
 def leave_out(app, config):
     """Notebooks whose kernels ended are shown without outputs."""
-    pages = [f"{page}.ipynb" for page in unexecuted()]
+    pages = [f"{page}.ipynb" for page in config.kernel_ended]
     config.nb_execution_excludepatterns = [*config.nb_execution_excludepatterns, *pages]
 
 
@@ -150,6 +143,7 @@ def list_failures(app, exception):
 
 
 def setup(app):
+    app.add_config_value("kernel_ended", [], "env")  # pages that `build.py` could not execute
     app.add_role_to_domain("glue", "text", NumberOrGap(), override=True)
     app.connect("config-inited", leave_out)
     app.connect("doctree-read", insert_box)

@@ -8,8 +8,8 @@ are folds of their own. Plumbing is not searched.
 
 from __future__ import annotations
 
+import patches
 from docutils import nodes
-from myst_nb import sphinx_ as myst_nb
 from nbformat import NotebookNode
 from sphinx.transforms.post_transforms import SphinxPostTransform
 
@@ -60,12 +60,6 @@ def as_on_the_page(cell: NotebookNode) -> NotebookNode:
     return NotebookNode({**cell, "metadata": NotebookNode(metadata)})
 
 
-def to_tokens(notebook, *rest, usual=myst_nb.notebook_to_tokens):
-    """Parse a notebook with the cells as they are on the page; outputs stay those of its own."""
-    cells = [as_on_the_page(cell) for cell in notebook.cells]
-    return usual(NotebookNode({**notebook, "cells": cells}), *rest)
-
-
 class LeaveOutOfSearch(SphinxPostTransform):
     """Plumbing in another kind of node, for HTML."""
 
@@ -86,7 +80,7 @@ def visit(translator, node):
 
 
 def setup(app):
-    myst_nb.notebook_to_tokens = to_tokens
+    patches.parse_cells_as(as_on_the_page)
     app.add_node(Plumbing, html=(visit, None))
     app.add_post_transform(LeaveOutOfSearch)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -26,15 +26,6 @@ TOKEN = "token-of-the-test"
 STARTING, RUNNING, ANSWER = 120, 300, 60  # seconds, on a busy machine
 NOTE = "The kernel does not answer"
 WHOLE = "book/hinton-diagrams"
-# Kernels are forked, which saves each chapter some seconds.
-SERVER = f"""
-import sys
-sys.path.insert(0, {str(ROOT / "book" / "_ext")!r})
-from ahead import forked_kernels
-from jupyterlab.labapp import main
-with forked_kernels():
-    main()
-"""
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +57,7 @@ def lab(tmp_path_factory):
     log = home / "log.txt"
     with log.open("w") as output:
         server = subprocess.Popen(
-            [sys.executable, "-c", SERVER, *options],
+            [sys.executable, "-m", "jupyterlab", *options],
             env={
                 **os.environ,
                 "OMP_NUM_THREADS": "1",

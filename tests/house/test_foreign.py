@@ -63,14 +63,15 @@ def test_notebooks_that_fail_are_told(tmp_path):
         kernel = {"name": "python3", "display_name": "Python 3"}
         notebook = nbformat.v4.new_notebook(cells=cells, metadata={"kernelspec": kernel})
         nbformat.write(notebook, folder / f"{name}.ipynb")
-    runner = foreign.commands(1, foreign.ROOT)["notebooks"][0]
+    command = foreign.commands(2, foreign.ROOT)["notebooks"]
+    options = [str(option) for option in command if not str(option).endswith(".ipynb")]
     answer = subprocess.run(
-        [sys.executable, runner, "--jobs", "2", *folder.glob("*.ipynb")],
+        [sys.executable, *options, *folder.glob("*.ipynb")], cwd=tmp_path,
         env=foreign.environment("jog-7", tmp_path / "measured"), capture_output=True, text=True,
     )  # fmt: skip
     assert answer.returncode == 1
     failed = dict(
-        re.findall(r"^FAILED (\w+)\.ipynb\n(.*?)(?=^FAILED|\Z)", answer.stdout, re.M | re.S)
+        re.findall(r"^_+ .*?(\w+)\.ipynb _+$\n(.*?)(?=^_+ |\Z)", answer.stdout, re.M | re.S)
     )
     assert set(failed) == set(CELLS) - {"fine"}, answer.stdout + answer.stderr
     assert "not so" in failed["raises"] and "look here" in failed["warns"]

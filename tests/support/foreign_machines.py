@@ -39,6 +39,9 @@ SETTINGS = {
 }  # fmt: skip
 """Environment variables of each foreign machine; ``jog-1+other-libraries`` has those of both."""
 
+TIMEOUT = 900
+"""Seconds for a notebook's cell."""
+
 CI = "jog-1+other-libraries"
 """The one that every run of the test suite tries."""
 
@@ -58,10 +61,12 @@ def commands(jobs: int, root: Path) -> dict[str, list]:
     pages = sorted(
         path for where in ("", "evidence/") for path in root.glob(f"book/{where}*.ipynb")
     )
-    runner = root / "tests" / "support" / "forked_notebooks.py"
+    pytest = ["-m", "pytest", "-q", "-n", jobs]
     files = [f"tests/report/test_{name}.py" for name in ("claims", "judging")]
-    claims = ["-m", "pytest", "-q", "-n", jobs, *files, "-k", "verdicts_are or values_are"]
-    return {"claims": claims, "notebooks": [runner, "--jobs", jobs, *pages]}
+    return {
+        "claims": [*pytest, *files, "-k", "verdicts_are or values_are"],
+        "notebooks": [*pytest, "--nbmake", f"--nbmake-timeout={TIMEOUT}", *pages],
+    }
 
 
 def check(name: str, jobs: int, root: Path = ROOT) -> list[str]:
