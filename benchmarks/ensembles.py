@@ -38,14 +38,14 @@ def eager_loop(network, x, y, rate, momentum, epochs, warm_up=0):
 @contextmanager
 def threads(count: int):
     """Let torch, and `train_ensemble`, use so many threads."""
-    before = torch.get_num_threads(), descent._WORKERS
+    before = torch.get_num_threads(), descent.WORKERS
     torch.set_num_threads(count)
-    descent._WORKERS = count
+    descent.WORKERS = count
     try:
         yield
     finally:
         torch.set_num_threads(before[0])
-        descent._WORKERS = before[1]
+        descent.WORKERS = before[1]
 
 
 def training_set(width: int):

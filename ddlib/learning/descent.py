@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import platform
-from collections.abc import Callable
 from threading import Event
 
 import numpy as np
@@ -12,6 +10,7 @@ import torch
 from tqdm.auto import tqdm
 
 from ddlib._check import cases_of, every, finite_array, flag, integer, like, shaped
+from ddlib.learning._packed import product_with
 from ddlib.learning._threads import in_threads
 from ddlib.learning.network import TorqueModel, Weights, from_rows, rows
 from ddlib.learning.training import (
@@ -26,19 +25,8 @@ from ddlib.learning.training import (
     recorded_epochs,
 )
 
-_WORKERS = min(2, torch.get_num_threads())  # threads of `train_ensemble`: OMP_NUM_THREADS, or two
+WORKERS = min(2, torch.get_num_threads())  # threads of `train_ensemble`: OMP_NUM_THREADS, or two
 _BLOCK = 8  # most members that a thread trains side by side: what fits into a core's cache
-
-# Whether products with the inputs may go through oneDNN, by the operators that torch's compiler
-# uses: its kernels take the widest registers of any processor, those of MKL of Intel's alone.
-_ONEDNN = (
-    torch.backends.mkldnn.is_available()
-    and platform.machine().lower() in {"x86_64", "amd64"}
-    and all(
-        hasattr(torch.ops.mkldnn, f"_{op}") for op in ("reorder_linear_weight", "linear_pointwise")
-    )
-)
-_LEAST = 300_000  # multiplications from which a product is worth oneDNN's longer way
 
 _times_slope = torch.ops.aten.sigmoid_backward.grad_input  # g, s -> g s (1 - s), one pass
 
@@ -117,7 +105,7 @@ def train_ensemble(
         targets = shaped("targets", targets, (members, *data.y.shape))
     integer("warm_up", warm_up, 0)
     snapshots = {integer("snapshots", e, 0, epochs) for e in snapshots}
-    count = _WORKERS * math.ceil(members / (_WORKERS * _BLOCK))
+    count = WORKERS * math.ceil(members / (WORKERS * _BLOCK))
     blocks = np.array_split(np.arange(members), min(count, members))
     bar = tqdm(total=epochs * members, desc=label, disable=not progress, mininterval=0.5)
     stop = Event()
@@ -131,7 +119,7 @@ def train_ensemble(
     threads = torch.get_num_threads()
     torch.set_num_threads(1)  # one core for each block: no waiting at every product
     try:
-        parts, interrupted = in_threads(work, blocks, _WORKERS, stop)
+        parts, interrupted = in_threads(work, blocks, WORKERS, stop)
     finally:
         torch.set_num_threads(threads)
         bar.close()
@@ -244,8 +232,8 @@ class Descent:
         cases = self.inputs.shape[1]
         self.back = torch.empty(n, self.hidden, cases)
         self.delta = torch.empty(n, self.rows - self.hidden, cases)
-        self._net = _times(self.inputs, len(self.first))
-        self._gradient = _times(self.inputs.t().contiguous(), len(self.first))
+        self._net = product_with(self.inputs, len(self.first))
+        self._gradient = product_with(self.inputs.t().contiguous(), len(self.first))
 
     def _activities(self, net):
         """Activities of the hidden and output units, in place, as views of `net`."""
@@ -298,15 +286,6 @@ class Descent:
         """All members as plain arrays."""
         first = self.first.numpy().astype(float).reshape(self.members, self.rows, -1)
         return from_rows(first, self.second.numpy().astype(float), self.shape)
-
-
-def _times(matrix: torch.Tensor, rows: int) -> Callable[[torch.Tensor], torch.Tensor]:
-    """Products of left-hand matrices of some `rows` with one that stays the same, packed once."""
-    if not _ONEDNN or rows * matrix.numel() < _LEAST:
-        return lambda left: torch.mm(left, matrix)
-    packed = torch.ops.mkldnn._reorder_linear_weight(matrix.t().contiguous(), rows)
-    linear = torch.ops.mkldnn._linear_pointwise
-    return lambda left: linear(left, packed, None, "none", [], "")
 
 
 def prepare(x, y) -> tuple[torch.Tensor, torch.Tensor]:

@@ -165,23 +165,27 @@ class Objective:
             back = (second.T @ delta) * hidden_slope
             slopes[0].addmm_(torch.cat([back, delta]), z.T)
             slopes[1].addmm_(delta, hidden.T)
+            # J'J: the residual of output o has the derivative slope[o] times that of its net input
             bend = slope * slope
             steep = (second.square().T @ bend) * hidden_slope.square()
             squares[0].addmm_(torch.cat([steep, bend]), z.square().T)
             squares[1].addmm_(bend, hidden.square().T)
 
-            if exact:
+            if exact:  # the residual times its own bend: what J'J leaves out
                 bend = bend + delta * (1 - 2 * output)
             bent = bend[:, None] * second[:, :, None] * hidden_slope
             pair = (both @ bend) * hidden_slope[r] * hidden_slope[s]
-            if exact:
+            if exact:  # (k, k) is pair k (k + 3) / 2: a hidden unit's sigmoid bends, too
                 pair[k * (k + 3) // 2] += back * (1 - 2 * hidden)
                 own.addmm_((delta[:, None] * hidden_slope).view(-1, n), z.T)
+            # all blocks in one product, (pairs of rows, cases) @ (cases, pairs of inputs); an explicit J
+            # is 1.6 to 3.6 times slower: it multiplies every pair of inputs anew
             products = self._multiply(z, start)
             table.addmm_(torch.cat([pair, bent.flatten(0, 1), bend]), products.T)
             factors = torch.cat([(hidden[:, None] * hidden_slope).flatten(0, 1), hidden])
             shared.addmm_(factors, (bend[:, None] * z).flatten(0, 1).T)
             corner += (bend[:, None] * hidden) @ hidden.T
+        # back from pairs: what was summed for all outputs gets each output's own factor
         cross = torch.empty(outputs, h, h + 1, self._inputs, dtype=z.dtype)
         parts = shared.view(h + 1, h, outputs, self._inputs).permute(2, 0, 1, 3)
         torch.mul(parts[:, :h], second[:, None, :, None], out=cross[:, :, :h])

@@ -19,7 +19,7 @@ from tqdm.auto import tqdm
 
 from ddlib._check import cases_of, finite_array, flag, integer, like, number, shaped
 from ddlib.learning._threads import in_threads
-from ddlib.learning.descent import _WORKERS
+from ddlib.learning.descent import WORKERS
 from ddlib.learning.gauss_newton import Objective
 from ddlib.learning.network import TorqueModel, Weights
 from ddlib.learning.training import History, TrainingInterrupted, TrainingSet
@@ -137,7 +137,7 @@ def solve(
 
     threads = torch.get_num_threads()
     try:
-        parts, interrupted = in_threads(work, members, _WORKERS, stop)
+        parts, interrupted = in_threads(work, members, WORKERS, stop)
     finally:
         torch.set_num_threads(threads)
         bar.close()

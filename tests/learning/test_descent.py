@@ -40,7 +40,7 @@ def by_hand(network, x, y, momenta, eps):
 )
 def test_every_network_steps_by_the_rule_of_1988(cases, warm_up, workers, block, monkeypatch):
     """In one to three blocks; the warm-up limits the momentum of the first steps to 0.5."""
-    monkeypatch.setattr(descent, "_WORKERS", workers)
+    monkeypatch.setattr(descent, "WORKERS", workers)
     monkeypatch.setattr(descent, "_BLOCK", block)
     rng = np.random.default_rng(2)
     windows, torque = rng.uniform(size=(cases, 2, 21)), rng.normal(size=(cases, 2))
