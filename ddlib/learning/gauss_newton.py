@@ -178,8 +178,8 @@ class Objective:
             if exact:  # (k, k) is pair k (k + 3) / 2: a hidden unit's sigmoid bends, too
                 pair[k * (k + 3) // 2] += back * (1 - 2 * hidden)
                 own.addmm_((delta[:, None] * hidden_slope).view(-1, n), z.T)
-            # all blocks in one product, (pairs of rows, cases) @ (cases, pairs of inputs); an explicit J
-            # is 1.6 to 3.6 times slower: it multiplies every pair of inputs anew
+            # all blocks in one product, (pairs of rows, cases) @ (cases, pairs of inputs); an
+            # explicit J is 1.6 to 3.6 times slower: it multiplies every pair of inputs anew
             products = self._multiply(z, start)
             table.addmm_(torch.cat([pair, bent.flatten(0, 1), bend]), products.T)
             factors = torch.cat([(hidden[:, None] * hidden_slope).flatten(0, 1), hidden])

@@ -17,7 +17,12 @@ TEXTS = {
     folder: {path: path.read_text("utf-8") for path in sorted((ROOT / folder).rglob("*.py"))}
     for folder in FOLDERS
 }
-HERE = {path.stem for f in ("tests", "benchmarks", "book/_ext") for path in TEXTS[f]}
+HERE = {
+    path.stem
+    for folder in ("tests", "benchmarks", "book/_ext")
+    for path in TEXTS[folder]
+    if path.parent.name != "instead"  # what a page that runs has in place of others' packages
+}
 UNSEEN = {"pinocchio": ["pin"]}
 """Modules that a ``.pth`` file puts on the path, with the distributions that they come from."""
 
