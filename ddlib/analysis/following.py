@@ -131,15 +131,15 @@ def _of_any(model: Callable, windows) -> np.ndarray:
     reach = np.cbrt(rounding) * np.maximum(
         np.abs(windows - windows.mean((0, 2))[:, None]).max((0, 2)), 1e-3
     )
-    found = np.empty((*windows.shape[1:], *torques.shape[:-2], torques.shape[-1]))
+    gradient = np.empty((*windows.shape[1:], *torques.shape[:-2], torques.shape[-1]))
     for joint, sample in np.ndindex(windows.shape[1:]):
         before, ends = windows[:, joint, sample].copy(), []
         for sign in (1, -1):
             windows[:, joint, sample] = before + sign * reach[joint]
             ends.append(torque().astype(float).mean(-2))
         windows[:, joint, sample] = before
-        found[joint, sample] = (ends[0] - ends[1]) / (2 * reach[joint])
-    return finite_array("gradient of model", np.moveaxis(found, (0, 1), (-2, -1)))
+        gradient[joint, sample] = (ends[0] - ends[1]) / (2 * reach[joint])
+    return finite_array("gradient of model", np.moveaxis(gradient, (0, 1), (-2, -1)))
 
 
 def gains(f, step: float) -> np.ndarray:

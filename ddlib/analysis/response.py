@@ -38,14 +38,18 @@ def unit_responses(outputs, states) -> Responses:
         axes = orth((x - x.mean(0)) / x.std(0), rcond=1e-9)
         return ((axes.T @ y) ** 2).sum(0) / power
 
-    count = states.shape[-1]
-    alone = np.stack([share([k]) for k in range(count)], -1)
-    together = share(list(range(count)))
-    less = np.stack([share([i for i in range(count) if i != k]) for k in range(count)], -1)
-    unique = np.clip(together[:, None] - less, 0, 1)
+    quantity_count = states.shape[-1]
+    alone = np.stack([share([k]) for k in range(quantity_count)], -1)
+    together = share(list(range(quantity_count)))
+    without = np.stack(
+        [share([i for i in range(quantity_count) if i != k]) for k in range(quantity_count)], -1
+    )
+    unique = np.clip(together[:, None] - without, 0, 1)
     shape = np.moveaxis(outputs, -2, 0).shape[1:]
     return Responses(
-        alone.reshape(*shape, count), unique.reshape(*shape, count), together.reshape(shape)
+        alone.reshape(*shape, quantity_count),
+        unique.reshape(*shape, quantity_count),
+        together.reshape(shape),
     )
 
 

@@ -117,10 +117,10 @@ def recursive_lagrange(constants, q, qd, qdd, zero=0.0, one=1.0) -> list:
         along = _quarter_turn(turn, zero)[:3]
         own, across = _product(frame, along), _product(rate, along)
         bent = _product(frame, _quarter_turn(along, zero)[:3])
-        moved = [_scaled(v, row) for row in across]
-        both = _added(moved, moved)
+        coriolis = [_scaled(v, row) for row in across]
+        twice_coriolis = _added(coriolis, coriolis)
         pulled = _added([_scaled(v * v, row) for row in bent], [_scaled(a, row) for row in own])
-        twice = _added(_product(twice, turn), _added(both, pulled))
+        twice = _added(_product(twice, turn), _added(twice_coriolis, pulled))
         rate = _added(_product(rate, turn), [_scaled(v, row) for row in own])
         frame = _product(frame, turn)
         origin = _sum(origin, _turned(twice, link.tip))

@@ -27,11 +27,11 @@ def checked(check: Check, run: int | None = None) -> Illustration:
     ValueError
         If the check has no such run.
     """
-    marked = [found for found in check.findings if len(found.rows)]
+    marked = [finding for finding in check.findings if len(finding.rows)]
     if run is None:
         run = marked[0].where[0] if marked else 0
     run = integer("run", run, 0, len(check.runs) - 1)
-    marked = [found for found in marked if found.where[0] == run]
+    marked = [finding for finding in marked if finding.where[0] == run]
     logged = check.runs[run]
     with np.errstate(divide="ignore", invalid="ignore"):
         speed = np.gradient(logged.q, logged.t, axis=0)
@@ -45,7 +45,7 @@ def checked(check: Check, run: int | None = None) -> Illustration:
         for j, row in enumerate(axes):
             for axis, (label, values) in zip(row, series.items()):
                 axis.plot(logged.t[::every], values[::every, j], color=COLOURS[0], lw=0.9)
-                for k, kind in enumerate(dict.fromkeys(found.kind for found in marked)):
+                for k, kind in enumerate(dict.fromkeys(finding.kind for finding in marked)):
                     rows = [f.rows for f in marked if f.kind == kind and f.where[1] in (None, j)]
                     if not rows:
                         continue
@@ -60,7 +60,7 @@ def checked(check: Check, run: int | None = None) -> Illustration:
         if shown:
             legend_above(figure, list(shown.values()), list(shown))
 
-    kinds = ", ".join(dict.fromkeys(found.kind for found in marked)) or "nothing"
+    kinds = ", ".join(dict.fromkeys(finding.kind for finding in marked)) or "nothing"
     name = logged.name or f"run {run + 1}"
     alt = f"Angle, speed and torque of both joints over time, {name}. Marked: {kinds}."
     return illustrate(draw, alt, 7.0, 4.0)

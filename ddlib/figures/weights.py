@@ -263,9 +263,9 @@ def decomposed(functions: Mapping[str, np.ndarray] | np.ndarray, step: float) ->
         for axis in axes[len(parts) :]:
             axis.remove()
 
-    told = "; ".join(f"{title}: {_told(part)}" if title else _told(part)
+    energies = "; ".join(f"{title}: {_told(part)}" if title else _told(part)
                      for title, part in parts.items())  # fmt: skip
-    alt = f"Weights over the window, as squares and as a curve with its parts. {told}."
+    alt = f"Weights over the window, as squares and as a curve with its parts. {energies}."
     return illustrate(draw, alt, 7.0, 2.6 if rows == columns == 1 else 0.4 + 2.3 * rows)
 
 

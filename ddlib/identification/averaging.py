@@ -27,8 +27,10 @@ def acting_time(recording: Recording, hold: float | None) -> tuple[float, float]
     if hold is not None:
         return 0.0, number("hold", hold, 0.0)
     period = recording.control_step or 0.0
-    late = recording.computing_time  # with one, a sample holds the torque of the reading before
-    return late - period if late else 0.0, period
+    computing_time = (
+        recording.computing_time
+    )  # with one, a sample holds the torque of the reading before
+    return computing_time - period if computing_time else 0.0, period
 
 
 def bumps_over(t, width, length, orders=(0, 1, 2)) -> list[np.ndarray]:
@@ -52,8 +54,8 @@ def where_sign_is_sure(recording: Recording, names) -> np.ndarray:
     q = recording.q
     speed = np.abs(five_point_velocity(q, recording.step))
     speed = np.moveaxis(speed.reshape(-1, *q.shape[-3:]).mean(0), -1, 0)
-    wanted = np.array([SLOW if f"F_c{j + 1}" in names else 0.0 for j in range(2)])
-    return speed >= wanted[:, None, None]
+    least_speed = np.array([SLOW if f"F_c{j + 1}" in names else 0.0 for j in range(2)])
+    return speed >= least_speed[:, None, None]
 
 
 def notes_on_slow_joints(kept, names) -> tuple[str, ...]:
@@ -71,12 +73,18 @@ def mean_sign(velocity) -> np.ndarray:
 
     The sign at a sample would be wrong by up to a period where a velocity changes it.
     """
-    slow = np.clip(velocity / SIGN_SPEED, -1.0, 1.0)
-    area = slow * (velocity - SIGN_SPEED * slow / 2)  # integral of the sign over the velocity
+    blurred_sign = np.clip(velocity / SIGN_SPEED, -1.0, 1.0)
+    area = blurred_sign * (
+        velocity - SIGN_SPEED * blurred_sign / 2
+    )  # integral of the sign over the velocity
     change = np.diff(velocity, axis=-2)
-    even = np.abs(change) < 1e-6 * SIGN_SPEED
-    mean = np.where(even, slow[..., 1:, :], np.diff(area, axis=-2) / np.where(even, 1.0, change))
-    return np.concatenate([mean, slow[..., -1:, :]], -2)
+    steady_speed = np.abs(change) < 1e-6 * SIGN_SPEED
+    mean = np.where(
+        steady_speed,
+        blurred_sign[..., 1:, :],
+        np.diff(area, axis=-2) / np.where(steady_speed, 1.0, change),
+    )
+    return np.concatenate([mean, blurred_sign[..., -1:, :]], -2)
 
 
 def five_point_velocity(q, step) -> np.ndarray:

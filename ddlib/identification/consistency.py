@@ -55,13 +55,15 @@ def physically_consistent(estimate: Estimate, margin: float = 1e-3) -> Estimate:
         -1, len(names), len(names)
     )
     moved = np.zeros(flat.shape, bool)
-    for k, (value, cover) in enumerate(zip(flat, spread)):
-        told = np.flatnonzero(np.isfinite(value))
-        if not told.size:
+    for k, (value, covariance) in enumerate(zip(flat, spread)):
+        finite = np.flatnonzero(np.isfinite(value))
+        if not finite.size:
             continue
-        found = _nearest(value[told], cover[np.ix_(told, told)], [names[i] for i in told], margin)
-        moved[k, told] = np.abs(found - value[told]) > 1e-9 * np.abs(value[told]).max()
-        flat[k, told] = found
+        nearest = _nearest(
+            value[finite], covariance[np.ix_(finite, finite)], [names[i] for i in finite], margin
+        )
+        moved[k, finite] = np.abs(nearest - value[finite]) > 1e-9 * np.abs(value[finite]).max()
+        flat[k, finite] = nearest
     if not moved.any():
         return estimate
     shape = values.shape
@@ -113,9 +115,9 @@ def _nearest(value, cover, names, margin) -> np.ndarray:
             a, b, d = start[rigid]
             p = np.sqrt(max(a - d, 0.0) + nudge * abs(a) + 1e-12)
             free[rigid] = p, b / p, np.sqrt(max(d - (b / p) ** 2, 0.0) + nudge * abs(d) + 1e-12)
-        found = fit(
+        solution = fit(
             lambda z: whiten @ (arm(z) - value), free, x_scale="jac", xtol=1e-12, ftol=1e-12,
             gtol=1e-12, max_nfev=100,
         )  # fmt: skip
-        best = found if best is None or found.cost < best.cost else best
+        best = solution if best is None or solution.cost < best.cost else best
     return arm(best.x)

@@ -94,11 +94,11 @@ def by_modulation(
     width = int((width + tiny) / (6 * recording.step)) * 6 * recording.step
     if hold is None and recording.control_step is None:
         raise ValueError("hold must be given, as the recording has no control_step; got None")
-    acts, recording = acting_time(recording, hold), in_runs(recording)
+    acting, recording = acting_time(recording, hold), in_runs(recording)
     place = recording.t - begin, width, end - begin
     bumps, later, after = (
         bumps_over(*place),
-        bumps_held(*place, *acts),
+        bumps_held(*place, *acting),
         bumps_held(*place, 0.0, recording.step),
     )
     steady = where_sign_is_sure(recording, names) @ bumps[0].T / bumps[0].sum(-1) > 0.9
@@ -111,12 +111,12 @@ def by_modulation(
 
     def regressor(q) -> tuple[np.ndarray, ...]:
         rows = _modulated(bumps, after, q, recording.step)
-        found = []
+        whitened = []
         for row, keeps, factors in zip(rows, steady, whiten):
             a = regressor_columns(row, names, np.empty((*q.shape[:-2], len(later))))
             parts = [w @ a[..., k, keep, :] for k, (w, keep) in enumerate(zip(factors, keeps))]
-            found.append(np.concatenate(parts, -2))
-        return tuple(found)
+            whitened.append(np.concatenate(parts, -2))
+        return tuple(whitened)
 
     torques = tuple(
         np.concatenate([y[..., k, keep] @ w.T for k, (w, keep) in enumerate(zip(ws, keeps))], -1)

@@ -56,13 +56,15 @@ def instrumental_variables(
     shapes, given = [x.shape[-2] for x in regressors], [z.shape[-2] for z in others]
     if shapes != given:
         raise ValueError(f"instruments must have {shapes} equations by joint, got {given}")
-    count = sum(shapes)
-    if count <= len(names):
-        raise ValueError(f"equations must be more than the {len(names)} parameters, got {count}")
+    equation_count = sum(shapes)
+    if equation_count <= len(names):
+        raise ValueError(
+            f"equations must be more than the {len(names)} parameters, got {equation_count}"
+        )
     memory = round(1.5 * max(shapes) ** (1 / 3)) if memory is None else memory
     integer("memory", memory, 0, max(shapes) - 1)
     noise = [np.ones(y.shape[:-1]) for y in torques]
-    smallest = 1e-12 * np.sqrt(sum(np.sum(y**2, -1) for y in torques) / count) + 1e-300
+    smallest = 1e-12 * np.sqrt(sum(np.sum(y**2, -1) for y in torques) / equation_count) + 1e-300
     for _ in range(rounds):
         weights = [np.maximum(s, smallest)[..., None, None] ** -2 for s in noise]
         seen = sum(w * (_t(z) @ x) for w, z, x in zip(weights, others, regressors))
@@ -73,7 +75,7 @@ def instrumental_variables(
         inverse = np.linalg.inv(seen)
         values = (inverse @ felt)[..., 0]
         left = [y - (x @ values[..., None])[..., 0] for x, y in zip(regressors, torques)]
-        free = max(1 - len(names) / count, 1e-9)
+        free = max(1 - len(names) / equation_count, 1e-9)
         noise = [np.sqrt(np.mean(u**2, -1) / free) if u.size else s for u, s in zip(left, noise)]
     # an equation draws the fit to itself: what it would leave without (MacKinnon & White 1985)
     drawn = [
@@ -89,7 +91,7 @@ def instrumental_variables(
         variances.append(np.diagonal(covariance, axis1=-2, axis2=-1))
     errors = np.sqrt(np.maximum(*variances))
     return Estimate(
-        tuple(names), values, errors, np.stack(noise, -1), count - len(names),
+        tuple(names), values, errors, np.stack(noise, -1), equation_count - len(names),
         unsure=np.ones(values.shape, bool) if equations.biased else None, notes=equations.notes,
     )  # fmt: skip
 

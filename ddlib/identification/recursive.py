@@ -21,8 +21,8 @@ class RecursiveLeastSquares:
         self.weights = shaped("weights", weights, "(..., outputs, features)").copy()
         number("penalty", penalty, 0.0, open_low=True)
         self.forgetting = number("forgetting", forgetting, 0.0, 1.0, open_low=True)
-        *runs, _, count = self.weights.shape
-        self.covariance = np.broadcast_to(np.eye(count) / penalty, (*runs, count, count))
+        *runs, _, features = self.weights.shape
+        self.covariance = np.broadcast_to(np.eye(features) / penalty, (*runs, features, features))
 
     def update(self, features, target) -> np.ndarray:
         """Learn from one sample; what the estimate before it would have said, (..., outputs)."""

@@ -141,12 +141,12 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
     """
     like("equations", equations, "Equations")
     integer("rounds", rounds, 1)
-    names, count = equations.names, sum(y.shape[-1] for y in equations.torque)
-    if count <= len(names):
-        slow = not count and any(name.startswith("F_c") for name in names)
+    names, equation_count = equations.names, sum(y.shape[-1] for y in equations.torque)
+    if equation_count <= len(names):
+        slow = not equation_count and any(name.startswith("F_c") for name in names)
         why = f": dry friction asks for a joint that moves on at {SLOW} rad/s or more"
         raise ValueError(
-            f"equations must be more than the {len(names)} parameters, got {count}"
+            f"equations must be more than the {len(names)} parameters, got {equation_count}"
             f"{why if slow else ''}"
         )
     equations, notes = _driven(equations)
@@ -154,10 +154,10 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
     names, regressors, torques = equations[:3]
     unseen = _unseen(equations)
     if not unseen.shape[1]:
-        found = _solved(names, regressors, torques, rounds)
-        unsure = _biased(equations, found, np.eye(len(names)))
-        notes = (*notes, *_impossible(found), *_alike(equations, regressors, found))
-        return replace(found, unsure=unsure, notes=notes)
+        estimate = _solved(names, regressors, torques, rounds)
+        unsure = _biased(equations, estimate, np.eye(len(names)))
+        notes = (*notes, *_impossible(estimate), *_alike(equations, regressors, estimate))
+        return replace(estimate, unsure=unsure, notes=notes)
     if unseen.shape[1] == len(names):
         raise ValueError(f"equations must determine some of {', '.join(names)}; they do not")
     return _partly(equations, unseen, rounds, notes)
@@ -219,8 +219,12 @@ def _information(equations, joints=None):
     Means over repetitions; each joint's noise is what its own equations leave over, and all of its
     torque if they are too few to leave anything.
     """
-    count = len(equations.names)
-    seen, blurred, energy = np.zeros((count, count)), np.zeros((count, count)), 0.0
+    parameters = len(equations.names)
+    seen, blurred, energy = (
+        np.zeros((parameters, parameters)),
+        np.zeros((parameters, parameters)),
+        0.0,
+    )
     for j, (a, y) in enumerate(zip(equations.regressor, equations.torque)):
         if (joints is not None and j not in joints) or not y.size:
             continue
@@ -229,7 +233,7 @@ def _information(equations, joints=None):
         kept = basis * (values > 1e-10 * values.max(-1, keepdims=True))[:, None, :]
         left = y - (kept @ (np.swapaxes(kept, -1, -2) @ y[..., None]))[..., 0]
         power = np.mean(y**2)
-        free = y.shape[-1] - count
+        free = y.shape[-1] - parameters
         variance = max(np.sum(left**2) / (len(left) * free), 1e-20 * power) if free > 0 else power
         if variance == 0:
             continue
@@ -261,9 +265,9 @@ def _unseen(equations, joints=None, like=None) -> np.ndarray:
         strength, turned = np.linalg.eigh(rest.T @ seen @ rest)
         least = max(1 / max(energy, 1e-300), _SQUARED)
         ways = np.hstack([ways, rest @ turned[:, strength < least]])
-    found = np.zeros((len(size), ways.shape[1]))
-    found[felt] = ways if like is None else ways * (like[felt] / size[felt])[:, None]
-    return np.hstack([nothing, np.linalg.qr(found)[0]]) if ways.size else nothing
+    directions = np.zeros((len(size), ways.shape[1]))
+    directions[felt] = ways if like is None else ways * (like[felt] / size[felt])[:, None]
+    return np.hstack([nothing, np.linalg.qr(directions)[0]]) if ways.size else nothing
 
 
 def _biased(equations, found, ways) -> np.ndarray | None:
@@ -274,8 +278,8 @@ def _biased(equations, found, ways) -> np.ndarray | None:
         return None
     weights = np.maximum(found.noise, 1e-100) ** -2.0
     blur = np.tensordot(weights, np.stack(equations.blur), 1)
-    moved = found.covariance @ (ways.T @ blur @ ways) @ found.values[..., None]
-    return np.abs(moved[..., 0]) > 0.5 * found.errors
+    bias = found.covariance @ (ways.T @ blur @ ways) @ found.values[..., None]
+    return np.abs(bias[..., 0]) > 0.5 * found.errors
 
 
 def _partly(equations, unseen, rounds, notes) -> Estimate:
@@ -286,7 +290,7 @@ def _partly(equations, unseen, rounds, notes) -> Estimate:
     ways = null_space(unseen.T) / size[:, None]
     inner = _solved(names[: ways.shape[1]], [a @ ways for a in regressors], torques, rounds)
     blurred = _biased(equations, replace(inner, names=names), ways)
-    told = np.linalg.norm(unseen, axis=1) < _TOUCHED
+    determined = np.linalg.norm(unseen, axis=1) < _TOUCHED
     free = null_space(unseen.T)  # sums in units of column sizes that can be told
 
     def summed(factors):
@@ -297,26 +301,26 @@ def _partly(equations, unseen, rounds, notes) -> Estimate:
 
     shape = (*inner.values.shape[:-1], len(names))
     values, errors = np.full(shape, np.nan), np.full(shape, np.nan)
-    for k in np.flatnonzero(told):
+    for k in np.flatnonzero(determined):
         factors = (free @ free[k]) * size / size[k] / (free[k] @ free[k])
         values[..., k], errors[..., k] = summed(size[k] * factors / size[k])
     sums = []
-    for factors in _sums(equations, unseen, told, size):
+    for factors in _sums(equations, unseen, determined, size):
         value, error = summed(factors)
         tidy = np.where(np.abs(factors) * size.min() > 0, factors, 0.0)
         half = student.ppf(0.975, inner.freedom) * error
         if blurred is not None:
             half = np.where(blurred.any(-1), np.nan, half)
         sums.append(Combination(tuple(names), tidy, value, error, half))
-    missing = ", ".join(n for n, k in zip(names, told) if not k)
+    missing = ", ".join(n for n, k in zip(names, determined) if not k)
     notes = [*notes, f"{missing} cannot be told from this recording."]
     notes += _alike(equations, [a @ ways for a in regressors], inner)
     unsure = None
     if blurred is not None:
         unsure = np.broadcast_to(blurred.any(-1, keepdims=True), shape)
     return Estimate(
-        tuple(names), values, errors, inner.noise, inner.freedom, told, tuple(sums), None, unsure,
-        tuple(notes),
+        tuple(names), values, errors, inner.noise, inner.freedom, determined, tuple(sums), None,
+        unsure, tuple(notes),
     )  # fmt: skip
 
 
@@ -332,8 +336,8 @@ def _sums(equations, unseen, told, size) -> list[np.ndarray]:
             fits = np.linalg.norm(row @ unseen) < 0.1 * np.linalg.norm(row)
             if len(kept) < wanted and fits and np.linalg.matrix_rank(tried, tol=0.05) > len(kept):
                 kept.append(row / np.linalg.norm(row))
-    found = [row * size for row in kept]
-    return [row / row[np.flatnonzero(row)[0]] for row in found]
+    sums = [row * size for row in kept]
+    return [row / row[np.flatnonzero(row)[0]] for row in sums]
 
 
 def _reduced(rows) -> list[np.ndarray]:
@@ -367,17 +371,17 @@ def _alike(equations, regressors, found) -> list[str]:
     """A word on each joint whose averaged equations leave more than noise: neighbours are alike."""
     if found.values.ndim > 1 or equations.blur is None:
         return []
-    told = []
+    notes = []
     for j, (a, y) in enumerate(zip(regressors, equations.torque)):
         left = y - a @ found.values
         share = left[1:] @ left[:-1] / (left @ left) if left.any() else 0.0
         if share * np.sqrt(left.size) > _ALIKE:
-            told.append(
+            notes.append(
                 f"What is left of joint {j + 1}'s torque is no noise, as neighbours are alike "
                 f"(correlation {share:.2f}): an effect has no term, or the torque is logged early "
                 "or late. The intervals are too narrow."
             )
-    return told
+    return notes
 
 
 def from_states(q, qd, qdd, torque, names: Sequence[str] = RIGID) -> Equations:

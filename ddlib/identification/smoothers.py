@@ -180,11 +180,12 @@ def _filtered(q, step, cutoff, order) -> np.ndarray:
 
 def _later(orders, late=0.0) -> np.ndarray:
     """States (..., time, joint, 3) a little later, by Taylor's polynomial, from derivatives."""
-    count = len(orders)
-    found = [
-        sum(orders[k + n] * late**n / factorial(n) for n in range(count - k)) for k in range(3)
+    order_count = len(orders)
+    states = [
+        sum(orders[k + n] * late**n / factorial(n) for n in range(order_count - k))
+        for k in range(3)
     ]
-    return np.stack(found, -1)
+    return np.stack(states, -1)
 
 
 def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
@@ -194,12 +195,12 @@ def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
     """
     orders = again(recording.q)
     warn_of_log(recording)
-    acts = acting_time(recording, hold)
+    acting = acting_time(recording, hold)
     rows, single = in_runs(recording if rows is None else rows), recording.reference.q.ndim == 2
     steady = where_sign_is_sure(rows, names)
     if steady.shape[-1] != recording.t.size:
         raise ValueError(f"rows must have {recording.t.size} samples, got {steady.shape[-1]}")
-    states = _later(orders, acts[0] + acts[1] / 2 if width is None else 0.0)
+    states = _later(orders, acting[0] + acting[1] / 2 if width is None else 0.0)
     states = states[..., None, :, :, :] if single else states
     (begin, end), step, motion = recording.span, recording.step, recording.motion
     inside = np.zeros(recording.t.size, bool)
@@ -219,7 +220,7 @@ def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
     place = recording.t - begin, width, end - begin
     bumps, later, after = (
         bumps_over(*place, (0,))[0],
-        bumps_held(*place, *acts),
+        bumps_held(*place, *acting),
         bumps_held(*place, 0.0, step),
     )
     keeps = (steady @ bumps.T / bumps.sum(-1) > 0.9) & ((bumps @ ~inside) / bumps.sum(-1) < 0.02)
@@ -231,14 +232,14 @@ def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
 
     def averaged(states) -> tuple[np.ndarray, ...]:
         rows = from_states(*np.moveaxis(states, -1, 0), np.zeros(2), names)[1]
-        sign, found = mean_sign(states[..., 1]), []
+        sign, whitened = mean_sign(states[..., 1]), []
         for j, (a, ws, runs) in enumerate(zip(rows, whiten, keeps)):
             mean = bumps @ a
             if f"F_c{j + 1}" in names:
                 mean[..., names.index(f"F_c{j + 1}")] = sign[..., j] @ after.T
             parts = [w @ mean[..., k, keep, :] for k, (w, keep) in enumerate(zip(ws, runs))]
-            found.append(np.concatenate(parts, -2))
-        return tuple(found)
+            whitened.append(np.concatenate(parts, -2))
+        return tuple(whitened)
 
     def regressor(q) -> tuple[np.ndarray, ...]:
         return averaged(_later(again(q)))
@@ -282,22 +283,22 @@ def _shares(q, noise, moving) -> list[float]:
 
 def _smoothed(q, step, shares) -> np.ndarray:
     """Smoothed angles and three derivatives, (order, ..., time, joint)."""
-    found = []
+    by_joint = []
     for j, share in enumerate(shares):
         x = _states(q[..., j].reshape(-1, q.shape[-2]), share)[0]
         x = np.concatenate([x, np.gradient(x[..., -1:], axis=-2)], -1)
-        found.append((x / step ** np.arange(_ORDER + 1)).reshape(*q.shape[:-1], -1))
-    return np.moveaxis(np.stack(found, -2), -1, 0)
+        by_joint.append((x / step ** np.arange(_ORDER + 1)).reshape(*q.shape[:-1], -1))
+    return np.moveaxis(np.stack(by_joint, -2), -1, 0)
 
 
 def _likeliest(runs, noise) -> float:
     """The share of process noise that makes the readings likeliest; white `noise` if known."""
     runs = runs[: max(1, _ENOUGH // runs.shape[1]), :_ENOUGH]
-    count = runs.shape[1]
+    samples = runs.shape[1]
 
     def unlikely(exponent) -> float:
         _, halves, left = _states(runs, 10.0**exponent)
-        free = count - _ORDER
+        free = samples - _ORDER
         variance = np.mean(left) / free + 1e-300 if noise is None else noise**2
         return free * np.log(variance) + halves + np.mean(left) / variance
 

@@ -85,9 +85,9 @@ class FilteredEquations:
         self.pull = self._chosen(pairs, z) if self._given is None else self._given
         x, y = (np.concatenate(parts) for parts in zip(*pairs))
         for pull in (*(p for p in _PULLS if p > self.pull), self.pull):
-            z, found = self._solve(x, y, pull, z)
+            z, projection = self._solve(x, y, pull, z)
         self.filters = self.first + self._ways @ z
-        self._measure(x, y, [len(torque) for _, torque in pairs], z, found)
+        self._measure(x, y, [len(torque) for _, torque in pairs], z, projection)
         return self
 
     def predict(self, runs) -> np.ndarray:
@@ -95,8 +95,8 @@ class FilteredEquations:
         if not hasattr(self, "estimate"):
             raise RuntimeError("nothing has been learnt: call fit first")
         if isinstance(runs, Recording):
-            found = np.stack([self.predict(x) for x, _ in self._pairs(runs)])
-            return found.reshape(*runs.q.shape[:-2], *found.shape[1:])
+            torques = np.stack([self.predict(x) for x, _ in self._pairs(runs)])
+            return torques.reshape(*runs.q.shape[:-2], *torques.shape[1:])
         states = self._windows("runs", runs) @ self.filters.T
         return self._rows(states) @ self.estimate.values
 

@@ -3,9 +3,8 @@
 Descent multiplies by the same inputs in every epoch. oneDNN packs such a matrix once, and its
 kernels take the widest registers of any processor, those of MKL only of Intel's. PyTorch has no
 public door to it: the operators are those that its compiler uses, and their names begin with an
-underscore. So they stand here and nowhere else. Where they are missing, or the product is small,
-it is `torch.mm`.
-Sums are rounded differently on both ways, by some units in the last place.
+underscore. So they stand here and nowhere else. Where they are missing, or the product is small, it
+is `torch.mm`. The two ways round their sums differently, by some units in the last place.
 """
 
 from __future__ import annotations

@@ -105,8 +105,8 @@ def train_ensemble(
         targets = shaped("targets", targets, (members, *data.y.shape))
     integer("warm_up", warm_up, 0)
     snapshots = {integer("snapshots", e, 0, epochs) for e in snapshots}
-    count = WORKERS * math.ceil(members / (WORKERS * _BLOCK))
-    blocks = np.array_split(np.arange(members), min(count, members))
+    block_count = WORKERS * math.ceil(members / (WORKERS * _BLOCK))
+    blocks = np.array_split(np.arange(members), min(block_count, members))
     bar = tqdm(total=epochs * members, desc=label, disable=not progress, mininterval=0.5)
     stop = Event()
 

@@ -88,11 +88,11 @@ class Objective:
         the lower triangle is set, is Gauss-Newton's ``J'J``, or if `exact` all second derivatives.
         """
         hidden, split = self._hidden, self._split
-        table, cross, corner, slopes, squares = self._sums(vector, exact)
+        row_blocks, cross, corner, slopes, squares = self._sums(vector, exact)
         matrix = _zeros(len(vector), len(vector))
         first, inputs = matrix[:split, :split], self._inputs
         blocks = first.view(self._rows, inputs, self._rows, inputs).numpy()
-        blocks[self._blocks[0], :, self._blocks[1]] = table.numpy()[:, self._symmetric]
+        blocks[self._blocks[0], :, self._blocks[1]] = row_blocks.numpy()[:, self._symmetric]
         lower = matrix[split:, :split].view(*cross.shape[:2], self._rows, self._inputs)
         lower[:, :, :hidden] = cross[:, :, :hidden]
         for o in range(self._outputs):
@@ -143,7 +143,8 @@ class Objective:
         and s sums ``z[i] z[j]`` times a product of factors, so that one product of matrices
         gives all blocks, each pair of rows and inputs once.
 
-        `table`, (pair of rows, pair of inputs), has the orders of `_blocks` and `_pair_number`.
+        `row_blocks`, (pair of rows, pair of inputs), has the orders of `_blocks` and
+        `_pair_number`.
         `cross`, (output, hidden, hidden + 1, input), is the weight from a hidden unit to an
         output against all hidden rows and that output's, `corner` against its fellows. `slopes`
         and `squares` are the gradient and J's squared lengths, of rows and of those weights.
@@ -152,7 +153,10 @@ class Objective:
         h, outputs = self._hidden, self._outputs
         k = torch.arange(h)
         both = (second[:, r] * second[:, s]).T
-        table, corner = _zeros(len(self._blocks[0]), len(self._products)), _zeros(outputs, h, h)
+        row_blocks, corner = (
+            _zeros(len(self._blocks[0]), len(self._products)),
+            _zeros(outputs, h, h),
+        )
         shared, own = _zeros(h * (h + 1), outputs * self._inputs), _zeros(outputs * h, self._inputs)
         slopes, squares = ([_zeros(self._rows, self._inputs), _zeros(outputs, h)] for _ in range(2))
         block = self._products.shape[1]
@@ -178,10 +182,10 @@ class Objective:
             if exact:  # (k, k) is pair k (k + 3) / 2: a hidden unit's sigmoid bends, too
                 pair[k * (k + 3) // 2] += back * (1 - 2 * hidden)
                 own.addmm_((delta[:, None] * hidden_slope).view(-1, n), z.T)
-            # all blocks in one product, (pairs of rows, cases) @ (cases, pairs of inputs); an
-            # explicit J is 1.6 to 3.6 times slower: it multiplies every pair of inputs anew
+            # all blocks in one product, (pairs of rows, cases) @ (cases, pairs of inputs); with an
+            # explicit J it is 1.6 to 3.6 times slower: every pair of inputs is multiplied anew
             products = self._multiply(z, start)
-            table.addmm_(torch.cat([pair, bent.flatten(0, 1), bend]), products.T)
+            row_blocks.addmm_(torch.cat([pair, bent.flatten(0, 1), bend]), products.T)
             factors = torch.cat([(hidden[:, None] * hidden_slope).flatten(0, 1), hidden])
             shared.addmm_(factors, (bend[:, None] * z).flatten(0, 1).T)
             corner += (bend[:, None] * hidden) @ hidden.T
@@ -192,7 +196,7 @@ class Objective:
         cross[:, :, h] = parts[:, h]
         if exact:
             cross[:, k, k] += own.view(outputs, h, -1)
-        return table, cross, corner, slopes, squares
+        return row_blocks, cross, corner, slopes, squares
 
 
 def _columns(x) -> torch.Tensor:

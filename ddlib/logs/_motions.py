@@ -273,12 +273,12 @@ def _fit(equations, rigid, shift, driven, keep=slice(None), rounds=3) -> _Fit:
 
 def _gravity(with_gravity: _Fit, without: _Fit, driven) -> Iterator[Finding]:
     """Whether torques that only the pose explains are there."""
-    told = 1 - with_gravity.left / np.where(without.left > 0, without.left, np.nan)
+    explained = 1 - with_gravity.left / np.where(without.left > 0, without.left, np.nan)
     share = (without.left - with_gravity.left) / without.size
-    seen = [j for j in range(2) if driven[j] and told[j] > 0.5 and share[j] > 0.002]
+    seen = [j for j in range(2) if driven[j] and explained[j] > 0.5 and share[j] > 0.002]
     if seen:
         names = " and ".join(JOINTS[j] for j in seen)
-        parts = ", ".join(f"{100 * told[j]:.0f} %" for j in seen)
+        parts = ", ".join(f"{100 * explained[j]:.0f} %" for j in seen)
         yield finding(
             None, "gravity", "note", (None, None), [],
             f"Torques that depend on the pose explain {parts} of what the {names} would otherwise "
@@ -484,7 +484,7 @@ def _excitation(stretches, equations, width, step, driven, fit, heavy) -> Iterat
     unsure = np.abs(vectors[~sure]).max(0, initial=0.0) > 0.2
     of = dict(zip(np.array(names)[felt], zip(errors, unsure)))
     scale = dict(zip(names, _by_name(fit)))
-    told, nothing, lost = [], [], []
+    measurable, nothing, lost = [], [], []
     for name in NAMES:
         if name in GRAVITY and not heavy:
             continue
@@ -495,18 +495,18 @@ def _excitation(stretches, equations, width, step, driven, fit, heavy) -> Iterat
         elif error > 0.25 * value:
             nothing.append(name)
         else:
-            told.append(f"{name} to {significant(max(200 * error / value, 0.1), 1)} %")
-    seen = f"The motion tells {', '.join(told) or 'no parameter by itself'}."
+            measurable.append(f"{name} to {significant(max(200 * error / value, 0.1), 1)} %")
+    seen = f"The motion tells {', '.join(measurable) or 'no parameter by itself'}."
     seen += f" Not told apart from zero: {', '.join(nothing)}." if nothing else ""
     seen += f" It does not tell one by one: {', '.join(lost)}." if lost else ""
     advice = "Nothing to do. The percentages are rough, and a fit mostly does better."
     if lost:
         advice = f"Leave {' or '.join(lost)} out, or move so that they matter apart."
-    if not told:
+    if not measurable:
         advice = "Record longer motions in which both joints speed up and slow down, each its way."
     yield finding(
-        None, "excitation", "doubtful" if lost or not told else "note", (None, None), [], seen,
-        "What a motion does not tell comes out at random, and spoils the rest.", advice,
+        None, "excitation", "doubtful" if lost or not measurable else "note", (None, None), [],
+        seen, "What a motion does not tell comes out at random, and spoils the rest.", advice,
     )  # fmt: skip
 
 

@@ -48,9 +48,9 @@ def _spikes(k, j, run, q, lost):
     steps = np.diff(run.t)
     with np.errstate(invalid="ignore"):
         uneven = np.abs(steps / np.median(steps) - 1) > 0.25
-    late = np.flatnonzero(uneven)  # beside such a step a motion looks like a spike
-    if late.size:
-        apart = np.abs(rows[:, None] - late).min(-1, initial=len(q)) > 3
+    gaps_at = np.flatnonzero(uneven)  # beside such a step a motion looks like a spike
+    if gaps_at.size:
+        apart = np.abs(rows[:, None] - gaps_at).min(-1, initial=len(q)) > 3
         rows, sizes = rows[apart], sizes[apart]
     spread = np.ptp(q)
     for severity, chosen in (

@@ -99,12 +99,12 @@ def units(k: int, run: LoggedRun) -> Iterator[Finding]:
     step = usual_step(run.t)
     if not step or run.t.size < 10:
         return
-    moved = np.nanmax(run.q, 0) - np.nanmin(run.q, 0)
+    ranges = np.nanmax(run.q, 0) - np.nanmin(run.q, 0)
     steps = np.diff(run.t)
     with np.errstate(divide="ignore", invalid="ignore"):
         speed = np.abs(np.diff(run.q, axis=0)) / np.where(steps > 0, steps, np.nan)[:, None]
     speed = np.nanpercentile(speed, 98, axis=0)  # no single jump decides
-    fastest, farthest = float(np.max(speed)), float(np.max(moved))
+    fastest, farthest = float(np.max(speed)), float(np.max(ranges))
     seen = f"The fastest joint moves {farthest:.3g} rad in all, at {fastest:.3g} rad/s."
     if farthest > 0.05 and fastest < SLOWEST * min(1.0, farthest):
         yield finding(

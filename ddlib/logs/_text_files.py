@@ -254,16 +254,18 @@ def _count(table: Table, name: str, skip_bad: bool) -> None:
         return
     k = bad[0]
     cells = "1 cell" if counts[k] == 1 else f"{counts[k]} cells"
-    told = f"{name}, line {table.numbers[k]}: {cells} under {heads} heads"
+    fault_at = f"{name}, line {table.numbers[k]}: {cells} under {heads} heads"
     sample = table.lines[k]
     if sep == "," and counts[k] > heads and not re.search(r"\d\.\d", sample):
-        told += "; decimal commas between commas cannot be told apart: write semicolons between"
-        raise fault(told + " columns, or decimal points")
+        fault_at += "; decimal commas between commas cannot be told apart: write semicolons between"
+        raise fault(fault_at + " columns, or decimal points")
     if counts[k] > 1 and (counts == counts[k]).all():
-        raise fault(f"{told}, as on all lines; give the columns their heads in a copy of the file")
+        raise fault(
+            f"{fault_at}, as on all lines; give the columns their heads in a copy of the file"
+        )
     among = f"; between cells is taken to be a {_NAMES.get(sep, repr(sep))}, say separator= if not"
     few = "; skip_bad=True leaves such lines out" if bad.size < counts.size / 2 else among
-    raise fault(told + few)
+    raise fault(fault_at + few)
 
 
 def columns(table: Table, places: list[int]) -> dict[int, np.ndarray]:
@@ -291,10 +293,10 @@ def columns(table: Table, places: list[int]) -> dict[int, np.ndarray]:
     for start in tqdm(starts, desc=shown(table.path), unit_scale=_CHUNK, unit=" lines", delay=3):
         text = "\n".join(table.lines[start : start + _CHUNK])
         frame = pandas.read_csv(io.StringIO(text), **how)
-        for place, found in parts.items():
+        for place, chunks in parts.items():
             cells = frame[place]
-            found.append(cells.to_numpy(object if cells.dtype.kind not in "iuf" else None))
-    return {place: np.concatenate(found) for place, found in parts.items()}
+            chunks.append(cells.to_numpy(object if cells.dtype.kind not in "iuf" else None))
+    return {place: np.concatenate(chunks) for place, chunks in parts.items()}
 
 
 def _decimal(table: Table, places) -> str:

@@ -18,8 +18,8 @@ ALIKE = 0.45
 
 def at_rest(run: LoggedRun) -> np.ndarray:
     """Which joints do not move, but for a noise of their reading, (2,)."""
-    moved = np.nanpercentile(run.q, 99.5, axis=0) - np.nanpercentile(run.q, 0.5, axis=0)
-    return (moved < 1e-3) | (moved < 0.005 * moved.max())
+    ranges = np.nanpercentile(run.q, 99.5, axis=0) - np.nanpercentile(run.q, 0.5, axis=0)
+    return (ranges < 1e-3) | (ranges < 0.005 * ranges.max())
 
 
 def weak(run: LoggedRun, j: int) -> bool:

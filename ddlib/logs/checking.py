@@ -84,11 +84,11 @@ def warn_of(recording: Recording) -> None:
     places = {}
     for finding in wrong:
         places.setdefault(finding.kind, []).append(finding)
-    told = [f"{kind} ({place(found[0], [f.where[0] for f in found])})" for kind, found in
+    kinds = [f"{kind} ({place(of_kind[0], [f.where[0] for f in of_kind])})" for kind, of_kind in
             places.items()]  # fmt: skip
     warnings.warn(
-        f"the recording shows what makes a fit wrong: {'; '.join(told[:3])}"
-        f"{f' and {len(told) - 3} kinds more' if len(told) > 3 else ''}. "
+        f"the recording shows what makes a fit wrong: {'; '.join(kinds[:3])}"
+        f"{f' and {len(kinds) - 3} kinds more' if len(kinds) > 3 else ''}. "
         "check_recording(recording) says where, and what to do.",
         DoubtfulRecording,
         stacklevel=4,
@@ -111,10 +111,10 @@ def _suspect(recording: Recording) -> bool:
     step = (recording.t[-1] - recording.t[0]) / (len(recording.t) - 1)
     moves = np.diff(q, axis=-2)
     fastest = max(moves.max(), -moves.min())
-    moved, work = np.ptp(q, axis=-2), np.ptp(tau, axis=-2)
+    ranges, work = np.ptp(q, axis=-2), np.ptp(tau, axis=-2)
     if not np.isfinite(fastest + work.sum()) or not step > 0:
         return True
-    if fastest > np.pi or fastest > 20 * step or fastest < 0.01 * step or moved.max() < 1e-3:
+    if fastest > np.pi or fastest > 20 * step or fastest < 0.01 * step or ranges.max() < 1e-3:
         return True
     if not work.any(-1).all():
         return True

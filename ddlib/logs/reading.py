@@ -130,9 +130,9 @@ def read_csv(
         what was done.
     """
     log = read_log(paths, columns, units, factors, **options)
-    recording, told = resampled(log, step, longest_gap, seconds, trust_stamps)
-    if told:
-        warnings.warn(told, LogWarning, stacklevel=2)
+    recording, notes = resampled(log, step, longest_gap, seconds, trust_stamps)
+    if notes:
+        warnings.warn(notes, LogWarning, stacklevel=2)
     return recording
 
 
@@ -217,15 +217,15 @@ def _check_layout(separator, decimal, encoding) -> None:
 
 def _by_column(name: str, given) -> dict:
     """A mapping by quantity; "q" and "tau" stand for both joints."""
-    found = {}
+    by_quantity = {}
     for key, value in _mapping(name, given).items():
         both = {"q": _ANGLES, "tau": _TORQUES}.get(key, (key,))
         for quantity in both:
             if quantity not in _QUANTITIES[:-1]:
                 known = ", ".join((*_QUANTITIES[:-1], "q", "tau"))
                 raise fault(f"{name} must be for {known}, got {shown(repr(key))}")
-            found[quantity] = value
-    return found
+            by_quantity[quantity] = value
+    return by_quantity
 
 
 @dataclass
@@ -462,7 +462,7 @@ class _Reader:
 
     def _forward(self, time, members) -> dict:
         """Each run's lines whose time is later than all before."""
-        kept, count = {}, 0
+        kept, left_out = {}, 0
         for name, rows in members.items():
             t = time[rows]
             fine = np.r_[True, t[1:] > np.maximum.accumulate(t)[:-1]]
@@ -471,31 +471,31 @@ class _Reader:
                     f"{shown(name, 120)}: time does not grow at {(~fine).sum()} of {len(t)} lines; "
                     f"is it the time? If runs follow each other, name their column by run="
                 )
-            kept[name], count = rows[fine], count + int((~fine).sum())
-        if count:
-            self.notes.append(f"{_lines(count)} not later than the line before left out.")
+            kept[name], left_out = rows[fine], left_out + int((~fine).sum())
+        if left_out:
+            self.notes.append(f"{_lines(left_out)} not later than the line before left out.")
         return kept
 
     def _angles(self, measured, lines, absolute_elbow) -> np.ndarray:
-        found = []
+        angles = []
         for name in _ANGLES:
             if name not in measured:
-                found.append(np.zeros(len(self.rows)))
+                angles.append(np.zeros(len(self.rows)))
                 continue
             values, kind = self._in_si(name, measured)
             if kind is None and name not in self.factors:
                 known_units.check_angle(values, self.name, name, lines)
-            found.append(self._scaled(name, values))
+            angles.append(self._scaled(name, values))
         if absolute_elbow:
-            found[1] = found[1] - found[0]
+            angles[1] = angles[1] - angles[0]
             self.notes.append("q2 was absolute; q1 was subtracted from it.")
-        return np.stack(found, -1)
+        return np.stack(angles, -1)
 
     def _torques(self, measured) -> np.ndarray:
-        found = []
+        torques = []
         for name in _TORQUES:
             if name not in measured:
-                found.append(np.zeros(len(self.rows)))
+                torques.append(np.zeros(len(self.rows)))
                 continue
             values, kind = self._in_si(name, measured)
             if kind == "current" and name not in self.factors:
@@ -503,13 +503,13 @@ class _Reader:
                     f"{self.name}: {name} is a current, in {self._unit(name)[0]}; give its "
                     f'torque for an ampere, like factors={{"{name}": 0.7}} (N m/A)'
                 )
-            found.append(self._scaled(name, values))
-        return np.stack(found, -1)
+            torques.append(self._scaled(name, values))
+        return np.stack(torques, -1)
 
     def _in_si(self, name, measured) -> tuple[np.ndarray, str | None]:
         """A column in SI units, and the kind of its unit; None if nothing tells the unit."""
-        told, values = self._size(name), np.asarray(measured[name], float)
-        return (values, None) if told is None else (known_units.converted(values, told[0]), told[1])
+        unit, values = self._size(name), np.asarray(measured[name], float)
+        return (values, None) if unit is None else (known_units.converted(values, unit[0]), unit[1])
 
     def _scaled(self, name, values) -> np.ndarray:
         if name not in self.factors:

@@ -95,10 +95,10 @@ def simulated_response(
     recording = follow(
         arm, controller, Trajectory(target, still, still), t, effects=effects, log_every=1
     )
-    moved = recording.q_true[..., joint] - np.asarray(posture)[joint]
-    step = moved[0, 1:] / size
-    late = np.hanning(t.size // 2)  # a window that averages what still swings
-    compliance = (moved[1, -late.size :] * late).sum() / late.sum() / push
+    deviation = recording.q_true[..., joint] - np.asarray(posture)[joint]
+    step = deviation[0, 1:] / size
+    averaging = np.hanning(t.size // 2)  # a window that averages what still swings
+    compliance = (deviation[1, -averaging.size :] * averaging).sum() / averaging.sum() / push
     overshoot = float(step.max() - 1)
     if np.ptp(step[-t.size // 10 :]) > 0.01:
         return LoopResponse(overshoot, np.nan, compliance)

@@ -118,9 +118,9 @@ def residual_torque(arm: Arm, recording: Recording) -> np.ndarray:
     q, qd = recording.q_true, recording.qd_true
     middle = [(x[..., 1:, :] + x[..., :-1, :]) / 2 for x in (q, qd)]
     needed = arm.inverse_dynamics(*middle, np.diff(qd, axis=-2) / step)
-    applied, late = recording.tau_true[..., :-1, :], recording.computing_time / period
-    if late:  # a sample holds what was computed a period ago, until the new torque is ready
-        applied = late * applied + (1 - late) * recording.tau_true[..., 1:, :]
+    applied, share_late = recording.tau_true[..., :-1, :], recording.computing_time / period
+    if share_late:  # a sample holds what was computed a period ago, until the new torque is ready
+        applied = share_late * applied + (1 - share_late) * recording.tau_true[..., 1:, :]
     return applied - needed
 
 

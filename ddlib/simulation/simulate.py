@@ -93,10 +93,10 @@ def free_motion(arm: Arm, q, qd, seconds, step=0.001, effects: Effects = IDEAL):
     q, qd = np.broadcast_arrays(finite_array("q", q, 2), finite_array("qd", qd, 2))
     number("seconds", seconds, 0.0, open_low=True)
     number("step", step, 0.0, seconds, open_low=True)
-    count = seconds / step
-    if abs(count - round(count)) > 1e-6:
-        raise ValueError(f"seconds must be a whole number of steps, got {count:g}")
-    t = np.arange(round(count) + 1) * step
+    steps = seconds / step
+    if abs(steps - round(steps)) > 1e-6:
+        raise ValueError(f"seconds must be a whole number of steps, got {steps:g}")
+    t = np.arange(round(steps) + 1) * step
     plant = Plant(arm, effects)
     x, v = _moving(plant, q, qd)
     states = [(x, v)]
@@ -179,11 +179,11 @@ def follow(
     step = equal_step(t)
     integer("log_every", log_every, 1, t.size - 1)
     one_of("velocity", velocity, ("tachometer", "difference"))
-    late = effects.computing_time
-    if late > step * (1 - 1e-9):
+    computing_time = effects.computing_time
+    if computing_time > step * (1 - 1e-9):
         raise ValueError(
             f"effects must have a computing time below the control period {step:g} s, got "
-            f"{late:g}; Delay adds whole periods"
+            f"{computing_time:g}; Delay adds whole periods"
         )
     reference = Trajectory(*(_time_first(x) for x in reference))
     first = reference.q[..., 0, :]
@@ -207,31 +207,31 @@ def follow(
             )
         previous, reading = reading, encoder(x[..., -2:], rng)
         speed = v[..., -2:] if velocity == "tachometer" else (reading - previous) / step
-        wanted = law(k, reading, speed)
-        if np.shape(wanted)[-1:] != (2,):
+        commanded = law(k, reading, speed)
+        if np.shape(commanded)[-1:] != (2,):
             raise ValueError(
                 "controller must return torques of shape (..., 2), one for each joint, got "
-                f"{told(wanted)} of shape {np.shape(wanted)}"
+                f"{told(commanded)} of shape {np.shape(commanded)}"
             )
-        if np.isnan(wanted).any():
+        if np.isnan(commanded).any():
             raise ValueError(
                 f"controller must return finite torques, got NaN at t = {t[k]:.3f} s: look for a "
                 "division by zero or a missing value in it"
             )
-        before, tau = tau, actuator(wanted, rng)
+        previous_tau, tau = tau, actuator(commanded, rng)
         if k % log_every == 0:
-            now = before if late else tau
-            log.append((reading, torque_sensor(now, rng), x[..., :2], v[..., :2], now))
+            acting = previous_tau if computing_time else tau
+            log.append((reading, torque_sensor(acting, rng), x[..., :2], v[..., :2], acting))
         with np.errstate(over="ignore", invalid="ignore"):  # divergence is reported above
-            if late:
-                x, v = _held(plant, x, v, before, late, parts)
-            x, v = _held(plant, x, v, tau, step - late, parts)
+            if computing_time:
+                x, v = _held(plant, x, v, previous_tau, computing_time, parts)
+            x, v = _held(plant, x, v, tau, step - computing_time, parts)
     read, tau, q_true, qd_true, tau_true = (
         np.stack(np.broadcast_arrays(*series), -2) for series in zip(*log)
     )
     logged = Trajectory(*(x[..., ::log_every, :] for x in reference))
     arrays = (read, tau, q_true, qd_true, tau_true)
-    return Recording(t[::log_every], logged, *arrays, duration, step, late)
+    return Recording(t[::log_every], logged, *arrays, duration, step, computing_time)
 
 
 def _initial_state(first, start):
