@@ -1,8 +1,6 @@
 from .base import (
-    SCRIPT as SCRIPT,
-    STYLE as STYLE,
     CurveWidget as CurveWidget,
-    module as module,
+    PageWidget as PageWidget,
 )
 from .engine.trainer import (
     NetworkTrainer as NetworkTrainer,
@@ -26,6 +24,10 @@ from .picker import (
 )
 from .player import (
     TrainingPlayer as TrainingPlayer,
+)
+from .scripts import (
+    bundle as bundle,
+    styles as styles,
 )
 from .switches import (
     RealArmSwitches as RealArmSwitches,

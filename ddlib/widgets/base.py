@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
 
 import anywidget
 import numpy as np
@@ -13,22 +12,9 @@ from ddlib._check import one_of
 from ddlib.widgets.parts._common import default_code, filled, key_of
 from ddlib.widgets.parts.panels import Pad, Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice, Parameter, Presets
+from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.still import Still, still_picture
 from ddlib.widgets.table import Live, evaluate, ranged, tabled, tobytes
-
-_STATIC = Path(__file__).with_name("static")
-
-# Files of the folder `static`, in their order: what every widget has, what a `CurveWidget` has, and
-# its style sheet. A class of its own kind adds its own after them.
-_FRAME = ("elements.js", "frame.js")
-SCRIPT = ("numbers.js", "parameters.js", "table.js", *_FRAME, "reading.js", "charts.js")
-SCRIPT += ("dragging.js", "kernel.js", "controls.js", "curves.js")
-STYLE = ("curves.css",)
-
-
-def module(*names: str | Path) -> str:
-    """Files of the folder `static`, or by full paths, as one text: a script must stand alone."""
-    return "\n".join((_STATIC / name).read_text(encoding="utf-8") for name in names)
 
 
 class _Checked(t.TraitType):
@@ -100,8 +86,8 @@ class CurveWidget(PageWidget):
         If arguments do not fit together, or if the table needs more than 400 kB.
     """
 
-    _esm = module(*SCRIPT)
-    _css = module(*STYLE)
+    _esm = bundle("curves.js")
+    _css = styles()
 
     baked = t.Bytes(help="the curves at every setting", read_only=True).tag(sync=True)
     request = t.Int(0, help="counts the page's requests for exact curves").tag(sync=True)

@@ -21,7 +21,7 @@ from ddlib.analysis import (
 )
 from ddlib.analysis.filters import NAMED_CLASSES
 from ddlib.learning import TorqueModel, Weights
-from ddlib.widgets.base import SCRIPT, STYLE, Panel, module
+from ddlib.widgets.base import Panel
 from ddlib.widgets.hinton import (
     CENTRE,
     JOINTS,
@@ -36,6 +36,7 @@ from ddlib.widgets.hinton import (
     zero_padded,
 )
 from ddlib.widgets.parts.parameters import Choice, Presets
+from ddlib.widgets.scripts import bundle, styles
 
 _FREQUENCIES = np.geomspace(0.005, 0.2, 31)  # where the gain is shown, over the sampling rate
 _FLOOR = 1e-3  # lowest gain shown, as a part of the largest: a zero of the response has none
@@ -59,8 +60,8 @@ class FilterExplorer(_HintonWidget):
         Passed on to `CurveWidget`.
     """
 
-    _esm = module(*SCRIPT, "hinton.js", "explorer.js")
-    _css = module(*STYLE, "hinton.css", "explorer.css")
+    _esm = bundle("hinton.js", "explorer.js")
+    _css = styles("hinton.css", "explorer.css")
 
     classes = t.List(list(CLASSES), read_only=True, help="names by the rule").tag(sync=True)
 

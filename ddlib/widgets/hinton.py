@@ -10,9 +10,10 @@ import traitlets as t
 from ddlib._check import number, one_of, told
 from ddlib.figures import JOINTS
 from ddlib.learning import TorqueModel, Weights
-from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
+from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.parts.parameters import Choice
+from ddlib.widgets.scripts import bundle, styles
 
 EXACT = 1e-4  # tolerance of widgets that bake every choice: what int16 can hold, and little else
 
@@ -67,15 +68,15 @@ def _check_models(models, axes: int, least: int = 2) -> dict[int, TorqueModel]:
 
 def common_step(models, step: float | None = None) -> float:
     """The sampling period of models, s: `step`, or what they say themselves; an error in doubt."""
-    told = [model.step for model in models if model.step is not None]
+    known = [model.step for model in models if model.step is not None]
     if step is not None:
         number("step", step, 0.0, open_low=True)
-    elif not told:
+    elif not known:
         raise ValueError("models do not know their sampling period: give step, in s")
     else:
-        step = told[0]
-    if not np.allclose(told, step, rtol=1e-6, atol=0.0):
-        raise ValueError(f"models must have a sampling period of {step:g} s, got {told}")
+        step = known[0]
+    if not np.allclose(known, step, rtol=1e-6, atol=0.0):
+        raise ValueError(f"models must have a sampling period of {step:g} s, got {known}")
     return float(step)
 
 
@@ -123,8 +124,8 @@ class _HintonWidget(CurveWidget):
         window is chosen; one named "width" is the window size shown.
     """
 
-    _esm = module(*SCRIPT, "hinton.js")
-    _css = module(*STYLE, "hinton.css")
+    _esm = bundle("hinton.js")
+    _css = styles("hinton.css")
 
     hinton = t.Dict(help="layout of the diagram", read_only=True).tag(sync=True)
 

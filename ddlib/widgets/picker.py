@@ -17,10 +17,11 @@ from ddlib.learning import TorqueModel, sliding_windows
 from ddlib.metrics import rmss
 from ddlib.setups import STATE_FEEDBACK, Setup
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place
-from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
-from ddlib.widgets.engine._plain import ENGINE, SLIDING, lean, loop, networks, plant
+from ddlib.widgets.base import CurveWidget
+from ddlib.widgets.engine._plain import loop, networks, plant
 from ddlib.widgets.parts.panels import Mark, Pad, Panel, Scalar
 from ddlib.widgets.parts.parameters import Parameter, Presets
+from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.table import Live
 
 _RIGID = "Lagrange-Euler"
@@ -108,8 +109,8 @@ class TrajectoryPicker(CurveWidget):
         ``(shoulder, elbow)``, at 31 extents of each joint from 0 to 45 degrees.
     """
 
-    _esm = module(*SCRIPT) + lean(module(*ENGINE, SLIDING, "clock.js", "picker.js"))
-    _css = module(*STYLE, "picker.css")
+    _esm = bundle("picker.js")
+    _css = styles("picker.css")
 
     extents_deg = _Extents()
     arm = t.Dict(help="lengths in m, curves of the joint angles, times in s", read_only=True)
@@ -188,11 +189,11 @@ class TrajectoryPicker(CurveWidget):
         errors = {name: "".join(map(_digits, 100 * x.T.ravel())) for name, x in errors.items()}
         angles, lengths = [f"{joint} angle" for joint in JOINTS], list(setup.arm.lengths)
         layouts, weights = networks(models.values())
-        told = [{"name": name, **layout} for name, layout in zip(models, layouts)]
+        described = [{"name": name, **layout} for name, layout in zip(models, layouts)]
         self._keep(
             map={"side": _AXIS.size, "step": _STEP, "errors": errors},
             arm={"lengths": lengths, "angles": angles, "times": _TIMES.tolist()},
-            loop={**curves.plain(), "models": told},
+            loop={**curves.plain(), "models": described},
             weights=weights,
         )
         self.observe(self._from_parameters, [f"{joint}_deg" for joint in JOINTS])

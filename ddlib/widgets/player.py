@@ -9,7 +9,7 @@ from ddlib._check import filled, finite_array, integer, like, told
 from ddlib.learning import TorqueModel
 from ddlib.setups import errors
 from ddlib.simulation import Recording
-from ddlib.widgets.base import SCRIPT, STYLE, Panel, Scalar, module
+from ddlib.widgets.base import Panel, Scalar
 from ddlib.widgets.hinton import (
     CENTRE,
     JOINTS,
@@ -20,6 +20,7 @@ from ddlib.widgets.hinton import (
     weight_functions,
 )
 from ddlib.widgets.parts.parameters import Choice
+from ddlib.widgets.scripts import bundle, styles
 
 _MOVED = 0.05  # the film begins where the weights have gone this part of their way
 _ERRORS = {"training": "training", "test": "trajectory 6"}
@@ -46,8 +47,8 @@ class TrainingPlayer(_HintonWidget):
         Passed on to `CurveWidget`.
     """
 
-    _esm = module(*SCRIPT, "hinton.js", "player.js")
-    _css = module(*STYLE, "hinton.css", "player.css")
+    _esm = bundle("hinton.js", "player.js")
+    _css = styles("hinton.css", "player.css")
 
     begin = t.Int(help="the film's first epoch", read_only=True).tag(sync=True)
 

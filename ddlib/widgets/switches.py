@@ -24,11 +24,11 @@ from ddlib.paper import TEST_TRAJECTORY
 from ddlib.setups import KD, KP
 from ddlib.simulation import CONTROL_STEP, Recording, follow
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
-from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
-from ddlib.widgets.engine._loops import LOOPS
-from ddlib.widgets.engine._plain import ENGINE, gains, lean, plant
+from ddlib.widgets.base import CurveWidget
+from ddlib.widgets.engine._plain import gains, plant
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
+from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.table import Live
 
 _SHARE = np.array([1.0, 0.3])  # strength of an effect at shoulder and elbow, over the shoulder's
@@ -78,8 +78,8 @@ class RealArmSwitches(CurveWidget):
         Passed on to `CurveWidget`.
     """
 
-    _esm = module(*SCRIPT) + lean(module(*ENGINE, LOOPS, "switches.js"))
-    _css = module(*STYLE, "switches.css")
+    _esm = bundle("switches.js")
+    _css = styles("switches.css")
 
     loop = t.Dict(help="plant, gains, reference and strengths", read_only=True).tag(sync=True)
 

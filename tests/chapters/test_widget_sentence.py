@@ -8,7 +8,6 @@ from widget_pages import LESSONS, functions, page_of
 
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.setups import JOINT_DAMPING_VISCOUS
-from ddlib.widgets.engine import _loops as loops
 from workshop.chapters.widgets.sentence import LoopSentence, TorqueSentence
 
 SPACE = "\u00a0"
@@ -17,7 +16,7 @@ ENDS = "([spec, all]) => all.map((values) => ENDS[spec.kind](spec, values))"
 
 @pytest.fixture(scope="module")
 def evaluate(browser):
-    with functions(browser, loops.LOOPS, LESSONS / "sentence.js") as call:
+    with functions(browser, "loops.js", LESSONS / "sentence.js") as call:
         yield call
 
 

@@ -37,7 +37,7 @@ def tuner():
 
 @pytest.fixture(scope="module")
 def engine(browser):
-    with functions(browser, loops.LOOPS) as call:
+    with functions(browser, "loops.js") as call:
         yield call
 
 

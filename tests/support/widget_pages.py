@@ -14,7 +14,7 @@ import numpy as np
 from book_pages import ROOT, code_cells, module_of
 from ipywidgets.embed import embed_data
 
-from ddlib.widgets import module
+from ddlib.widgets import bundle
 from ddlib.widgets.engine import _plain as plain
 
 LESSONS = ROOT / "book" / "workshop" / "chapters" / "widgets"
@@ -50,7 +50,7 @@ CALM = {"reduced_motion": "reduce"}
 def functions(browser, *scripts):
     """`call(function, argument)`: a JavaScript function beside the engine's and the scripts'."""
     page = browser.new_page()
-    script = module(*plain.ENGINE, plain._TRAINING, *scripts)
+    script = bundle("engine.js", "descent.js", *scripts)
     page.add_script_tag(content=script.replace("export default", "void"))
     yield page.evaluate
     page.close()

@@ -7,6 +7,7 @@ import json
 import os
 import shutil
 import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,8 +22,10 @@ from widget_pages import (
 )
 from widget_samples import make, make_kinds, parameters, wave
 
+import ddlib.widgets
 from ddlib.widgets import Pad
 
+STATIC = Path(ddlib.widgets.__file__).with_name("static")
 CI = os.environ.get("CI", "").lower() in {"1", "true"}
 
 
@@ -44,9 +47,12 @@ def node():
 
 SCRIPT = """
 import fs from "node:fs";
-const [module, input] = process.argv.slice(2);
-const { curvesAt, readTable, placeOf, valueNear, stepsOf, insidePolygon, fromFraction, toFraction,
-  ticks, around } = await import(module);
+const [folder, input] = process.argv.slice(2);
+const [numbers, parameters, table_] = await Promise.all(
+  ["numbers", "parameters", "table"].map((name) => import(`${folder}/${name}.js`)));
+const { insidePolygon, ticks, around } = numbers;
+const { placeOf, valueNear, stepsOf, fromFraction, toFraction } = parameters;
+const { curvesAt, readTable } = table_;
 const { spec, baked, settings, points } = JSON.parse(fs.readFileSync(input));
 const bytes = Uint8Array.from(Buffer.from(baked, "base64"));
 const table = readTable(spec, new DataView(bytes.buffer));
@@ -73,10 +79,10 @@ def run_script(node, folder, widget, chosen, points=()):
         "settings": [list(values.values()) for values in chosen],
         "points": points,
     }
-    files = {"in.json": json.dumps(data), "run.mjs": SCRIPT, "widget.mjs": widget._esm}
+    files = {"in.json": json.dumps(data), "run.mjs": SCRIPT}
     for name, text in files.items():
         (folder / name).write_text(text, encoding="utf-8")
-    command = [node, "run.mjs", (folder / "widget.mjs").as_uri(), "in.json"]
+    command = [node, "run.mjs", STATIC.as_uri(), "in.json"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)

@@ -11,10 +11,11 @@ from ddlib.analysis import content
 from ddlib.learning import Directions, TrainingSet
 from ddlib.setups import WINDOWS
 from ddlib.simulation import LOG_STEP
-from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
+from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.hinton import CENTRE, JOINTS, share_panel, width_choice, zero_padded
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
+from ddlib.widgets.scripts import bundle, styles
 from workshop.report import results
 from workshop.report.studies.span import READINGS
 
@@ -72,8 +73,8 @@ class _SpectrumExplorer(CurveWidget):
         Passed on to `CurveWidget`.
     """
 
-    _esm = module(*SCRIPT, "player.js") + _CHARTS
-    _css = module(*STYLE, "player.css") + _TWO_BY_TWO
+    _esm = bundle("player.js") + _CHARTS
+    _css = styles("player.css") + _TWO_BY_TWO
 
     def __init__(self, study: Mapping, directions: Sequence[Directions], **options):
         cells = study["cells"]

@@ -18,8 +18,6 @@ from ddlib.effects import Delay, Effects, ViscousFriction
 from ddlib.simulation import CONTROL_STEP, LOG_STEP, follow
 from ddlib.trajectories import Trajectory
 
-LOOPS = "loops.js"  # the script, after those of the engine
-
 
 def modes(arm: Arm, viscous, posture=(0.0, 0.0)) -> list[dict]:
     """The joints near a posture as two modes that viscous friction damps: what the page takes.

@@ -14,20 +14,8 @@ from ddlib.setups import Setup
 from ddlib.simulation import CONTROL_STEP, Recording
 from ddlib.trajectories import MOTION_SECONDS
 
-# Scripts: of every widget of this room; and, after them, of one that trains, of one whose networks
-# see a recording.
-ENGINE = ("physics.js", "engine.js")
-_TRAINING = "descent.js"
-SLIDING = "sliding.js"
-
 # Order of the weights in `_weight_bytes`.
 _FIELDS = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
-
-
-def lean(script: str) -> str:
-    """A script without its comments and indentation; for scripts whose texts stay within a line."""
-    lines = (line.strip() for line in script.splitlines())
-    return "\n".join(line for line in lines if line and not line.startswith("//")) + "\n"
 
 
 def plant(arm: Arm, effects: Effects) -> dict:

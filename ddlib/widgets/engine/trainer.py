@@ -24,10 +24,11 @@ from ddlib.paper import HIDDEN_UNITS
 from ddlib.setups import INITIAL, JOINT_DAMPING, Setup
 from ddlib.simulation import LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG
-from ddlib.widgets.base import SCRIPT, STYLE, PageWidget, module
-from ddlib.widgets.engine._plain import _FIELDS, _TRAINING, ENGINE, lean, loop, plant
+from ddlib.widgets.base import PageWidget
+from ddlib.widgets.engine._plain import _FIELDS, loop, plant
 from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.picker import _pad, _parameters
+from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.still import still_picture
 
 _FINEST = 5e-5  # step of the encoder, rad: readings are sent as int16
@@ -36,6 +37,7 @@ _SCALINGS = {"centred": (-1.0, 1.0), "printed": (0.0, 1.0)}  # ranges of the inp
 _STEPS = (0.25, 0.5, 1.0, 2.0, 4.0)  # step sizes, over `ddlib.learning.default_rate`
 _MOMENTA = (0.0, 0.5, 0.9, 0.95, 0.98, 0.995)
 _SEEDS = 50  # sets of initial weights that can be chosen
+_SEED, _INPUTS, _STEP, _MOMENTUM = 1, "printed", 1.0, 0.98  # choices at the start
 _ERRORS = (0.03, 2.0)  # range of the errors shown
 
 _CHOICES = ("extents_deg", "seed", "inputs", "shifted", "step_size", "momentum")
@@ -162,11 +164,8 @@ class NetworkTrainer(PageWidget):
         trainer.seed, trainer.epoch = 2, 400
     """
 
-    _esm = lean(
-        module(*(name for name in SCRIPT if name not in ("controls.js", "curves.js")))
-        + module(*ENGINE, _TRAINING, "canvas.js", "experiment.js", "trainer.js")
-    )
-    _css = module(*STYLE, "trainer.css")
+    _esm = bundle("trainer.js")
+    _css = styles("trainer.css")
 
     positions = t.Bytes(help="the runs' encoder readings, steps as int16", read_only=True)
     positions.tag(sync=True)
@@ -175,11 +174,11 @@ class NetworkTrainer(PageWidget):
     noise = t.Bytes(help="the torque sensor's noise in them, N m as float32", read_only=True)
     noise.tag(sync=True)
     extents_deg = t.Any().tag(sync=True)
-    seed = t.Int(1).tag(sync=True)
-    inputs = t.Enum(tuple(_SCALINGS), "printed").tag(sync=True)
+    seed = t.Int(_SEED).tag(sync=True)
+    inputs = t.Enum(tuple(_SCALINGS), _INPUTS).tag(sync=True)
     shifted = t.Bool(False).tag(sync=True)
-    step_size = t.Enum(_STEPS, 1.0).tag(sync=True)
-    momentum = t.Enum(_MOMENTA, 0.98).tag(sync=True)
+    step_size = t.Enum(_STEPS, _STEP).tag(sync=True)
+    momentum = t.Enum(_MOMENTA, _MOMENTUM).tag(sync=True)
     epoch = t.Int(0).tag(sync=True)
     reached = t.Dict(help="the page's last results, and the choices behind them", read_only=True)
     reached.tag(sync=True)
@@ -201,7 +200,7 @@ class NetworkTrainer(PageWidget):
         epochs: int = 2000,
         check: int = 5,
         level: float = 0.2,
-        momentum: float = 0.98,
+        momentum: float = _MOMENTUM,
         shifts: int = 5,
         code: str = "",
     ):
@@ -259,7 +258,7 @@ class NetworkTrainer(PageWidget):
             "rate": default_rate(width),
             "steps": list(_STEPS),
             "momenta": list(_MOMENTA),
-            "momentum": momentum,
+            "start": {"seed": _SEED, "inputs": _INPUTS, "step": _STEP, "momentum": momentum},
             "epochs": epochs,
             "check": check,
             "level": level,
@@ -309,18 +308,19 @@ class NetworkTrainer(PageWidget):
 
     def _follow(self, _=None):
         """Results belong to the choices and the epoch as they stand, or there are none."""
-        told, now = self.reached, {name: getattr(self, name) for name in (*_CHOICES, "epoch")}
-        now["extents_deg"] = [list(pair) for pair in self.extents_deg]
-        found = dict.fromkeys(("weights", "model", *_NUMBERS))
-        if told and all(told[name] == value for name, value in now.items()):
-            found |= {name: told[name] for name in _NUMBERS}
-            found["weights"] = weights = _weights(self.weight_bytes, self.spec["layout"])
-            scaling = told["scaling"]
+        reached = self.reached
+        choices = {name: getattr(self, name) for name in (*_CHOICES, "epoch")}
+        choices["extents_deg"] = [list(pair) for pair in self.extents_deg]
+        results = dict.fromkeys(("weights", "model", *_NUMBERS))
+        if reached and all(reached[name] == value for name, value in choices.items()):
+            results |= {name: reached[name] for name in _NUMBERS}
+            results["weights"] = weights = _weights(self.weight_bytes, self.spec["layout"])
+            scaling = reached["scaling"]
             ranges = _SCALINGS[self.inputs], TARGET_RANGE
-            made = (_scaler(scaling[name], to) for name, to in zip(("inputs", "outputs"), ranges))
-            found["model"] = TorqueModel(weights, *made, LOG_STEP)
+            pair = (_scaler(scaling[name], to) for name, to in zip(("inputs", "outputs"), ranges))
+            results["model"] = TorqueModel(weights, *pair, LOG_STEP)
         with self.hold_trait_notifications():
-            self._keep(**found)
+            self._keep(**results)
 
 
 def _weights(content: bytes, layout: dict) -> Weights:
@@ -331,10 +331,10 @@ def _weights(content: bytes, layout: dict) -> Weights:
     return Weights(**{name: part.reshape(shapes[name]) for name, part in zip(_FIELDS, parts)})
 
 
-def _scaler(told: dict, target) -> Scaler:
+def _scaler(scaling: dict, target) -> Scaler:
     """A scaling as the page has it: from `low` on, with a gain."""
-    low = np.array(told["low"])
-    return Scaler(low, low + (target[1] - target[0]) / np.array(told["gain"]), tuple(target))
+    low = np.array(scaling["low"])
+    return Scaler(low, low + (target[1] - target[0]) / np.array(scaling["gain"]), tuple(target))
 
 
 def _charts(epochs, time, torque, last: int) -> tuple[list[Panel], dict]:
@@ -353,13 +353,13 @@ def _charts(epochs, time, torque, last: int) -> tuple[list[Panel], dict]:
 
 def _still(panels, training, test, extents, width, hidden) -> tuple[str, str]:
     """The trajectories, the torques to be learnt, and what an untrained network makes of them."""
-    data = TrainingSet.from_recording(training, width, scaling=_SCALINGS["printed"])
+    data = TrainingSet.from_recording(training, width, scaling=_SCALINGS[_INPUTS])
     windows, torque = cases(test, width)
-    model = TorqueModel(first_weights(1, width, hidden)[0], data.inputs, data.outputs)
-    told = model.torque(windows)
+    model = TorqueModel(first_weights(_SEED, width, hidden)[0], data.inputs, data.outputs)
+    predicted = model.torque(windows)
     curves = {}
     for j, joint in enumerate(JOINTS):
-        curves |= {f"{joint} network": told[:, j], f"{joint} true": torque[:, j]}
+        curves |= {f"{joint} network": predicted[:, j], f"{joint} true": torque[:, j]}
         most = 1.15 * np.abs(torque[:, j]).max(keepdims=True)
         curves |= {f"{joint} low": -most, f"{joint} high": most}
     last = len(extents)

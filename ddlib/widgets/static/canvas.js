@@ -1,7 +1,9 @@
 // Drawing on canvases in the colours of the page.
 
+import { make } from "./elements.js";
+
 // A canvas as wide as its place and `place.height` high, drawn in pixels of the page.
-function sheet(height, label = "") {
+export function sheet(height, label = "") {
   const el = make("canvas", { role: "img", "aria-label": label, style: `height: ${height}px` });
   const pen = el.getContext("2d");
   const place = { el, pen, width: 0, height };
@@ -19,13 +21,13 @@ function sheet(height, label = "") {
 }
 
 // The colours of the page, by the names of their variables.
-function coloursOf(el) {
+export function coloursOf(el) {
   const style = getComputedStyle(el);
   const names = ["ink", "soft", "line", "paper", "c0", "c1", "c2", "c3"];
   return Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
 }
 
-function stroke(pen, colour, width, dash = []) {
+export function stroke(pen, colour, width, dash = []) {
   pen.strokeStyle = colour;
   pen.lineWidth = width;
   pen.setLineDash(dash);

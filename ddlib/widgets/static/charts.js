@@ -1,6 +1,8 @@
-// Draws charts. Follows baked.js, elements.js and reading.js in every widget's module.
+// Draws charts.
 
-const COLOURS = 6; // classes c0 to c5
+import { COLOURS, make, put, short, swatch } from "./elements.js";
+import { around, format, labels, powerText, ticks } from "./numbers.js";
+import { readerOf, unitOf } from "./reading.js";
 
 // Round numbers between two logarithms, as logarithms: powers of ten, or where there are fewer than
 // three also twice and five times them, or all digits, or the ends; at least `room` px apart.
@@ -33,12 +35,6 @@ function axis(low, high, scale, from, to, room) {
   return { place, marks: log ? powers.map((x) => 10 ** x) : powers, texts: powers.map(powerText) };
 }
 
-// A power of ten as text: whole ones with thousands apart, others with three digits.
-function powerText(x) {
-  const value = Number((10 ** x).toPrecision(3));
-  return value >= 1e-4 && value < 1e7 ? value.toLocaleString("en-US", { maximumFractionDigits: 6 }) : String(value).replace("-", "−");
-}
-
 function extremes(lists) {
   let [low, high] = [Infinity, -Infinity];
   for (const list of lists) {
@@ -48,18 +44,6 @@ function extremes(lists) {
     }
   }
   return [low, high];
-}
-
-// The sample of a line, stem or bar in a legend.
-function swatch(kind, k) {
-  const c = `c${k % COLOURS}`;
-  const samples = {
-    line: [{ class: `curve ${c}`, d: "M0 5H26" }],
-    stems: [{ class: `curve stem ${c}`, d: "M13 10V2" }, { class: `curve dots ${c}`, d: "M13 3h0" }],
-    bars: [{ class: `curve bar ${c}`, d: "M8 10V0H18V10Z" }],
-  };
-  const paths = samples[kind].map((attributes) => make("path", attributes));
-  return make("svg", { width: 26, height: 10, "aria-hidden": "true" }, ...paths);
 }
 
 // What a chart of each kind draws for one curve: `xs` are places of the samples in px, `y` maps
@@ -91,7 +75,7 @@ const DRAW = {
   },
 };
 
-function chart(view, panel) {
+export function chart(view, panel) {
   const { kind } = panel;
   const standing = kind !== "line"; // on zero
   const log = panel.y_scale === "log";

@@ -1,9 +1,11 @@
-// Time that is played or chosen by a slider. Follows elements.js.
+// Time that is played or chosen by a slider.
+
+import { buttonOf, make, write } from "./elements.js";
 
 // `draw(now)` shows a moment (s), words() what stands after it; with reduced motion the clock jumps
 // from one half second to the next. `rate()` is how many of its seconds pass in one; again() goes on
 // after it has changed.
-function clockOf(view, { at, end, step, rate = () => 1 }, draw, words = () => "") {
+export function clockOf(view, { at, end, step, rate = () => 1 }, draw, words = () => "") {
   const id = `${view.id}-time`;
   const output = make("output", { for: id });
   const slider = make("input", { id, type: "range", min: 0, max: end, step });

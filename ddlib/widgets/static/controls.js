@@ -1,6 +1,11 @@
-// Sliders, menus, switches, presets and the pad. Follows charts.js in every widget's module.
+// Sliders, menus, switches, presets and the pad.
 
-function slider(view, p, k) {
+import { besideOf, draggable } from "./dragging.js";
+import { buttonOf, make, onKeys, put, write } from "./elements.js";
+import { labels } from "./numbers.js";
+import { fromFraction, fullTicks, indexOf, show, stepsOf, toFraction } from "./parameters.js";
+
+export function slider(view, p, k) {
   const id = `${view.id}-${p.name}`;
   const output = make("output", { for: id });
   const steps = stepsOf(p, view.stepped);
@@ -16,7 +21,7 @@ function slider(view, p, k) {
 }
 
 // A discrete parameter: a menu, a switch, or a slider that steps over the options.
-function choice(view, p, k) {
+export function choice(view, p, k) {
   const id = `${view.id}-${p.name}`;
   const set = (index) => view.set({ [k]: p.options[index][0] });
   const now = () => indexOf(p, view.values[k]);
@@ -48,7 +53,7 @@ function choice(view, p, k) {
 }
 
 // Buttons that set several parameters at once; pressed where they stand so.
-function presetsOf(view) {
+export function presetsOf(view) {
   const { title, options } = view.spec.presets;
   const buttons = options.map(([label, values]) => buttonOf(label, () => view.set(values)));
   const near = (name, value) => view.near(view.parameter(name), value);
@@ -81,7 +86,7 @@ const WAYS = {
   PageUp: [0, 1],
 };
 
-function padOf(view) {
+export function padOf(view) {
   const { pad, parameters } = view.spec;
   const [i, j] = [pad.x, pad.y].map((name) => parameters.findIndex((p) => p.name === name));
   const [px, py] = [parameters[i], parameters[j]];

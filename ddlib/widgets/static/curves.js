@@ -1,7 +1,16 @@
 // Shows a CurveWidget (base.py). With a kernel its exact curves replace those of the table, which has
 // every setting of the parameters' grids.
 
-const PATIENCE = 2000; // ms to wait for a kernel
+import { chart } from "./charts.js";
+import { choice, padOf, presetsOf, slider } from "./controls.js";
+import { dress, freshId, make, numbersOf, report, safely, write } from "./elements.js";
+import { filled, frameOf, python } from "./frame.js";
+import { kernelOf } from "./kernel.js";
+import { format, powerText } from "./numbers.js";
+import { placeOf, show, valueNear, valueOfText } from "./parameters.js";
+import { curvesAt, readTable, samplesOf, split } from "./table.js";
+
+export const PATIENCE = 2000; // ms to wait for a kernel
 const QUIET = 700; // ms without a change after which the figure is described anew
 
 // Functions of the view, for widgets with more to show; each may return one that cleans up.
@@ -10,11 +19,12 @@ const QUIET = 700; // ms without a change after which the figure is described an
 // controls, top, numbers (a list between controls and charts), words (returns texts to be spoken), say(text),
 // schedule() (redraws in the next frame), pad (its parts), keep(name, read, write) (a part of the state that is no
 // parameter, see frame.js) with changed(), and resets (called by Reset).
-const extras = [];
+export const extras = [];
 
 // What a widget that computes in the page sets (`Live` in table.py): of the view, curves by name; they
 // end in NaN where a run is over.
 let live = null;
+export const computes = (curvesOf) => (live = curvesOf);
 
 function build({ model, el }) {
   const spec = model.get("spec");

@@ -1,9 +1,11 @@
-// Training in the page. Follows engine.js.
+// Training in the page.
+
+import { sigmoid } from "./engine.js";
 
 // Batch gradient descent with momentum on scaled windows and targets, as in ddlib's `Descent`.
 // Each epoch changes the network in place and returns the mean square error before the step.
 // The sums are written out over one array of weights: most of the time of a page that trains.
-function descent(net, windows, targets, eps, momentum) {
+export function descent(net, windows, targets, eps, momentum) {
   const { hidden: units, outputs, inputs, all } = net;
   const gradient = new Float64Array(all.length);
   const step = new Float64Array(all.length);

@@ -1,10 +1,10 @@
-// Dragging in a drawing, by mouse, pen or finger. Follows elements.js.
+// Dragging in a drawing, by mouse, pen or finger.
 
 const GRIP = 24; // px around a handle in which a finger takes hold of it
 const ASIDE = 8; // px sideways after which a touch elsewhere is a drag
 
 // Whether a pointer is at a handle.
-const besideOf = (handle) => ({ clientX, clientY }) => {
+export const besideOf = (handle) => ({ clientX, clientY }) => {
   const box = handle.getBoundingClientRect();
   const away = [clientX - box.x - box.width / 2, clientY - box.y - box.height / 2];
   return Math.hypot(...away) <= Math.max(GRIP, box.width / 2);
@@ -13,7 +13,7 @@ const besideOf = (handle) => ({ clientX, clientY }) => {
 // By mouse or pen anywhere; by touch from where `near(event)` holds, or sideways, or by a tap, so that
 // a vertical swipe from elsewhere scrolls the page. begin(event) is called where a drag begins,
 // move(event) at every place that it reaches.
-function draggable(svg, near, move, begin = move) {
+export function draggable(svg, near, move, begin = move) {
   let waiting = null; // a touch elsewhere, until it is known what it becomes
   const start = (event) => {
     waiting = null;

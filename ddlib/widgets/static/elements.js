@@ -6,40 +6,54 @@ const SVG_TAGS = new Set(
 );
 
 // An element with attributes and children, SVG or HTML by its name.
-function make(tag, attributes = {}, ...children) {
+export function make(tag, attributes = {}, ...children) {
   const el = SVG_TAGS.has(tag) ? document.createElementNS(SVG, tag) : document.createElement(tag);
   put(el, attributes);
   el.append(...children);
   return el;
 }
 
-function put(el, attributes) {
+export function put(el, attributes) {
   for (const [name, value] of Object.entries(attributes)) el.setAttribute(name, value);
 }
 
-function buttonOf(text, act, attributes = {}) {
+export function buttonOf(text, act, attributes = {}) {
   const el = make("button", { type: "button", ...attributes }, text);
   el.addEventListener("click", act);
   return el;
 }
 
 // A table with a caption, from texts.
-function tableOf(caption, heads, rows) {
+export function tableOf(caption, heads, rows) {
   const cells = (kind, texts) => make("tr", {}, ...texts.map((text) => make(kind, {}, text)));
   const body = make("tbody", {}, ...rows.map((row) => cells("td", row)));
   return make("table", {}, make("caption", {}, caption), make("thead", {}, cells("th", heads)), body);
 }
 
+export const COLOURS = 6; // classes c0 to c5
+
+// The sample of a line, stem or bar in a legend.
+export function swatch(kind, k) {
+  const c = `c${k % COLOURS}`;
+  const samples = {
+    line: [{ class: `curve ${c}`, d: "M0 5H26" }],
+    stems: [{ class: `curve stem ${c}`, d: "M13 10V2" }, { class: `curve dots ${c}`, d: "M13 3h0" }],
+    bars: [{ class: `curve bar ${c}`, d: "M8 10V0H18V10Z" }],
+  };
+  const paths = samples[kind].map((attributes) => make("path", attributes));
+  return make("svg", { width: 26, height: 10, "aria-hidden": "true" }, ...paths);
+}
+
 // Text in an element; the same text again would lay it out again.
-function write(el, text) {
+export function write(el, text) {
   if (el.textContent !== text) el.textContent = text;
 }
 
 // A number for a path, to hundredths of a pixel; quicker than toFixed.
-const short = (x) => Math.round(x * 100) / 100;
+export const short = (x) => Math.round(x * 100) / 100;
 
 // Keys pressed on an element: `act(event)` returns false for those that it leaves alone.
-function onKeys(el, act) {
+export function onKeys(el, act) {
   el.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey || act(event) === false) return;
     event.preventDefault();
@@ -49,7 +63,7 @@ function onKeys(el, act) {
 
 // The element of a widget, by its kind and its name for screen readers. In JupyterLab the keys are
 // the handle's that has the focus, not the notebook's: else an arrow would move or fold a cell.
-function dress(el, label, ...kinds) {
+export function dress(el, label, ...kinds) {
   el.addEventListener("focusin", ({ target }) => {
     target.dataset.lmSuppressShortcuts = "true"; // the focused element alone is asked
   });
@@ -58,12 +72,12 @@ function dress(el, label, ...kinds) {
 }
 
 // What the ids of a widget's elements begin with.
-const freshId = () => `dd${Math.random().toString(36).slice(2, 10)}`;
+export const freshId = () => `dd${Math.random().toString(36).slice(2, 10)}`;
 
 const SIZES = { Float64: 8, Float32: 4, Int16: 2, Uint16: 2 };
 
 // The little-endian numbers in the bytes of a trait.
-function numbersOf(bytes, kind) {
+export function numbersOf(bytes, kind) {
   if (!bytes?.buffer) throw new Error("bytes are missing");
   const data = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const length = Math.floor(data.byteLength / SIZES[kind]);
@@ -71,7 +85,7 @@ function numbersOf(bytes, kind) {
 }
 
 // Calls when the page changes its colours; returns a function that ends this.
-function onRecolour(callback) {
+export function onRecolour(callback) {
   const themes = new MutationObserver(callback);
   for (const root of [document.documentElement, document.body]) {
     themes.observe(root, { attributes: true, attributeFilter: ["data-theme", "data-jp-theme-light"] });
@@ -85,7 +99,7 @@ function onRecolour(callback) {
 }
 
 // Says in place of a figure what is wrong with it.
-function report(el, error) {
+export function report(el, error) {
   el.className = "ddlib-widget-error";
   el.setAttribute("role", "alert");
   el.removeAttribute("aria-label");
@@ -93,7 +107,7 @@ function report(el, error) {
 }
 
 // `build` as a script's `render`.
-function safely(build) {
+export function safely(build) {
   return ({ model, el }) => {
     try {
       return build({ model, el });

@@ -1,15 +1,17 @@
-// The live engine: an arm under sampled control, and window networks. Follows physics.js, which
-// holds the equations; descent.js trains. As in ddlib, whose numbers it gives (tests/widgets/
-// test_engine.py): angles in rad, torques in N m, times in s, [shoulder, elbow] in every pair.
-// A plant is what _plain.py writes: { arm, lengths, viscous, coulomb, smoothing, encoder, limit }.
+// The live engine: an arm under sampled control, and window networks. As in ddlib, whose numbers it
+// gives (tests/widgets/ test_engine.py): angles in rad, torques in N m, times in s, [shoulder, elbow]
+// in every pair. A plant is what _plain.py writes: { arm, lengths, viscous, coulomb, smoothing,
+// encoder, limit }.
 
-const JOINTS = [0, 1];
-const NAMES = ["shoulder", "elbow"];
+import { armAcceleration, armMass, armTorque, encoderReading, frictionTorque } from "./physics.js";
+
+export const JOINTS = [0, 1];
+export const NAMES = ["shoulder", "elbow"];
 
 // The plant
 
 // Accelerations under torques from which friction is not yet taken off.
-function respond(plant, q, v, tau) {
+export function respond(plant, q, v, tau) {
   const { viscous, coulomb, smoothing } = plant;
   const t1 = tau[0] - frictionTorque(viscous[0], coulomb[0], smoothing, v[0]);
   const t2 = tau[1] - frictionTorque(viscous[1], coulomb[1], smoothing, v[1]);
@@ -57,7 +59,7 @@ const limited = (plant, tau) =>
 
 // Sampled control. A law is a function of what is wanted ({ q, qd, qdd }) and what is measured.
 
-function pid({ kp, ki, kd, integral_limit: most }, step) {
+export function pid({ kp, ki, kd, integral_limit: most }, step) {
   const integral = [0, 0];
   return (wanted, q, v) =>
     JOINTS.map((j) => {
@@ -68,7 +70,7 @@ function pid({ kp, ki, kd, integral_limit: most }, step) {
 }
 
 // The equations of an arm at what is wanted, and a law that corrects.
-function feedforward(arm, feedback) {
+export function feedforward(arm, feedback) {
   return (wanted, q, v) => {
     const model = armTorque(arm, ...wanted.q, ...wanted.qd, ...wanted.qdd);
     const correction = feedback(wanted, q, v);
@@ -77,7 +79,7 @@ function feedforward(arm, feedback) {
 }
 
 // A plant that is driven period by period: the torque is held for `step` seconds.
-function drive(plant, q, v, step) {
+export function drive(plant, q, v, step) {
   const parts = substeps(plant, step);
   const run = { q: [...q], v: [...v], tau: [0, 0] };
   run.reading = readingOf(plant, q.map((x, j) => x - step * v[j]));
@@ -98,7 +100,7 @@ function drive(plant, q, v, step) {
 }
 
 // The paper's family out and back to extents (rad): -extent sin(pi t / duration), at rest outside.
-function pickAndPlace(extents, t, duration) {
+export function pickAndPlace(extents, t, duration) {
   const omega = Math.PI / duration;
   const moving = t >= 0 && t < duration * (1 - 1e-12);
   const part = (factor, shape) => extents.map((x) => (moving ? factor * x * shape(omega * t) : 0));
@@ -106,7 +108,7 @@ function pickAndPlace(extents, t, duration) {
 }
 
 // A motion of that family, period by period, from `rest` periods before it begins.
-function referenceOf({ extents, periods, step, motion }, rest = 0) {
+export function referenceOf({ extents, periods, step, motion }, rest = 0) {
   const reference = { q: [], qd: [], qdd: [] };
   const moving = Math.round(motion / step);
   for (let k = 0; k < periods; k++) {
@@ -117,7 +119,7 @@ function referenceOf({ extents, periods, step, motion }, rest = 0) {
 }
 
 // Follow a whole reference ({ q, qd, qdd }, a pair for each period); the log has every n-th sample.
-function follow(plant, law, reference, step, every, velocity) {
+export function follow(plant, law, reference, step, every, velocity) {
   const run = drive(plant, reference.q[0], [0, 0], step);
   const log = { reading: [], q: [], v: [], tau: [] };
   for (let k = 0; k < reference.q.length; k++) {
@@ -130,7 +132,7 @@ function follow(plant, law, reference, step, every, velocity) {
 }
 
 // The recording of a trajectory to extents in rad, from the rest before it to the rest after it.
-function recordingOf(loop, extents) {
+export function recordingOf(loop, extents) {
   const { plant, gains, step, every, rest } = loop;
   const reference = referenceOf({ ...loop, extents }, rest);
   return follow(plant, pid(gains, step), reference, step, every, "tachometer");
@@ -138,12 +140,12 @@ function recordingOf(loop, extents) {
 
 // Where elbow and hand are, m; and the torques that a force at the hand (N) makes.
 
-function placesOf([l1, l2], [q1, q2]) {
+export function placesOf([l1, l2], [q1, q2]) {
   const elbow = [l1 * Math.cos(q1), l1 * Math.sin(q1)];
   return [elbow, [elbow[0] + l2 * Math.cos(q1 + q2), elbow[1] + l2 * Math.sin(q1 + q2)]];
 }
 
-function torqueOfForce(lengths, q, [fx, fy]) {
+export function torqueOfForce(lengths, q, [fx, fy]) {
   const [[ex, ey], [x, y]] = placesOf(lengths, q);
   return [x * fy - y * fx, (x - ex) * fy - (y - ey) * fx];
 }
@@ -152,7 +154,7 @@ function torqueOfForce(lengths, q, [fx, fy]) {
 // (unit, joint, sample), hidden biases, output weights (output, unit), direct weights (output,
 // joint, sample), output biases.
 
-function networkOf({ hidden, outputs, joints, width }, values) {
+export function networkOf({ hidden, outputs, joints, width }, values) {
   const inputs = joints * width;
   const net = { hidden, outputs, inputs, width, all: Float64Array.from(values) };
   let at = 0;
@@ -166,7 +168,7 @@ function networkOf({ hidden, outputs, joints, width }, values) {
   return net;
 }
 
-const sigmoid = (x) => 1 / (1 + Math.exp(-x));
+export const sigmoid = (x) => 1 / (1 + Math.exp(-x));
 
 function dot(weights, row, x) {
   let sum = 0;
@@ -175,7 +177,7 @@ function dot(weights, row, x) {
 }
 
 // Activities for a scaled window: oldest sample first, joint by joint.
-function activity(net, x, hidden = new Float64Array(net.hidden), output = new Float64Array(net.outputs)) {
+export function activity(net, x, hidden = new Float64Array(net.hidden), output = new Float64Array(net.outputs)) {
   for (let h = 0; h < net.hidden; h++) {
     hidden[h] = sigmoid(dot(net.hiddenWeights, h, x) + net.hiddenBias[h]);
   }
@@ -188,7 +190,7 @@ function activity(net, x, hidden = new Float64Array(net.hidden), output = new Fl
 
 // A model is a network with the scaling of its inputs and outputs: { low, gain, first } each.
 
-function scaledWindow({ net, inputs }, window) {
+export function scaledWindow({ net, inputs }, window) {
   const x = new Float64Array(net.inputs);
   for (let i = 0; i < x.length; i++) {
     const j = Math.floor(i / net.width);
@@ -198,7 +200,7 @@ function scaledWindow({ net, inputs }, window) {
 }
 
 // Torques (N m) of output activities.
-const torqueOfOutput = ({ outputs: { low, gain, first } }, output) =>
+export const torqueOfOutput = ({ outputs: { low, gain, first } }, output) =>
   JOINTS.map((j) => low[j] + (output[j] - first) / gain[j]);
 
 // Torques (N m) for a window of positions (rad), oldest first, joint by joint.

@@ -1,9 +1,14 @@
-// What a trainer's network learns from, and the inertia that is in it afterwards. Follows engine.js.
-// A book is { positions, torques } of the recorded runs: encoder steps around the motion, N m in it.
+// What a trainer's network learns from, and the inertia that is in it afterwards. A book is {
+// positions, torques } of the recorded runs: encoder steps around the motion, N m in it.
+
+import { besideOf, draggable } from "./dragging.js";
+import { buttonOf, make, short } from "./elements.js";
+import { JOINTS, NAMES, activity, recordingOf } from "./engine.js";
+import { rint } from "./physics.js";
 
 // The runs' recording to extents in degrees: the book's where they are the same, others made anew.
 // The torque sensor's noise is the book's.
-function recordingAt({ loop, extents: known, encoder, samples, layout }, book, noise, extents) {
+export function recordingAt({ loop, extents: known, encoder, samples, layout }, book, noise, extents) {
   const [positions, torques] = [book.positions.slice(), book.torques.slice()];
   const half = layout.width >> 1;
   const [begin, around] = [loop.during[0], samples + layout.width - 1];
@@ -23,7 +28,7 @@ function recordingAt({ loop, extents: known, encoder, samples, layout }, book, n
 }
 
 // The map of each joint's range in the training runs to `target`, as ddlib's `Scaler` does it.
-function scalingOf(values, runs, factor, [first, last]) {
+export function scalingOf(values, runs, factor, [first, last]) {
   const training = values.subarray(0, (values.length / runs) * (runs - 1));
   const each = JOINTS.map((j) => training.filter((_, i) => i % 2 === j));
   const low = each.map((x) => factor * x.reduce((a, b) => Math.min(a, b)));
@@ -32,7 +37,7 @@ function scalingOf(values, runs, factor, [first, last]) {
 }
 
 // The mean gradient of an output's torque by a joint's window, N m/rad, over scaled windows.
-function meanGradient({ net, inputs, outputs }, windows, output, joint) {
+export function meanGradient({ net, inputs, outputs }, windows, output, joint) {
   const { width, hidden: units } = net;
   const through = new Float64Array(units);
   let direct = 0;
@@ -55,12 +60,12 @@ function meanGradient({ net, inputs, outputs }, windows, output, joint) {
 }
 
 // A filter's gain on acceleration: half its second moment over the window's times.
-const accelerationGain = (f, step) =>
+export const accelerationGain = (f, step) =>
   f.reduce((sum, w, i) => sum + (w * (step * (i - (f.length >> 1))) ** 2) / 2, 0);
 
 // Where the reader picks the runs' extents, degrees: a square with a mark for each run, to be dragged,
 // and a table of numbers. changed() is called after every change.
-function picksOf({ extents: known, home, most, runs }, changed) {
+export function picksOf({ extents: known, home, most, runs }, changed) {
   const extents = known.map((pair) => [...pair]);
   const [size, left, top] = [160, 36, 10];
   const place = ([a, b]) => [short(left + (size * a) / most), short(top + size * (1 - b / most))];

@@ -1,6 +1,9 @@
 // What FilterExplorer (explorer.py) adds to a HintonWidget: the name that the rule gives, and an
 // order in which the weights of the chosen window stand beside the diagram.
 
+import { extras } from "./curves.js";
+import { make } from "./elements.js";
+
 extras.push((view) => {
   const verdict = make("p", { class: "verdict" });
   const words = () => `Name by the rule: ${view.model.get("classes")[Math.round(view.curves.class[0])]}`;

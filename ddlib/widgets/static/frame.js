@@ -1,5 +1,7 @@
-// What all widgets have in common: a title, Reset, a link that restores the state, and the state
-// as Python code. Follows elements.js; a script of its own (`throw.js`) can use it as well.
+// What all widgets have in common: a title, Reset, a link that restores the state, and the state as
+// Python code.
+
+import { buttonOf, make } from "./elements.js";
 
 const LATER = 300; // ms after the last change at which the page's address follows
 
@@ -34,7 +36,7 @@ function queryWith(key, state) {
 // it and throws where the text is unfit; it starts as it is, or as `start`. What differs from the
 // start is in the address; where that already holds a text, it is written at once. changed() is to
 // be called after every change.
-function frameOf({ el, key, title, linked, reset, code }) {
+export function frameOf({ el, key, title, linked, reset, code }) {
   const others = [...document.querySelectorAll("[data-widget]")].map((x) => x.dataset.widget);
   let name = key;
   for (let k = 2; others.includes(name); k++) name = `${key}${k}`;
@@ -110,10 +112,10 @@ function frameOf({ el, key, title, linked, reset, code }) {
 }
 
 // Python code with texts in place of their names in braces.
-const filled = (code, texts) => code.replace(/\{(\w+)\}/g, (whole, name) => texts[name] ?? whole);
+export const filled = (code, texts) => code.replace(/\{(\w+)\}/g, (whole, name) => texts[name] ?? whole);
 
 // A value as Python writes it.
-function python(value) {
+export function python(value) {
   if (typeof value === "boolean") return value ? "True" : "False";
   return typeof value === "number" ? String(Number(value.toPrecision(6))) : JSON.stringify(value);
 }

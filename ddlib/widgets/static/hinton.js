@@ -1,6 +1,9 @@
 // What HintonWidget (hinton.py) adds to a CurveWidget: all weights as squares, in the paper's
 // layout, and a unit (or one of its windows) that is chosen by pointer or arrow keys.
 
+import { extras } from "./curves.js";
+import { make, onKeys, put } from "./elements.js";
+
 const BLOB = { width: 240, height: 62, gap: 8, side: 13 }; // of a unit, and its largest square
 const CELLS = "weights of all units";
 

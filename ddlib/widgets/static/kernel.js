@@ -5,7 +5,7 @@ const GONE = ["dead", "terminating", "restarting", "autorestarting"]; // states 
 // The kernel behind a model: whether it works at something else, as JupyterLab alone can tell; send()
 // returns false where the connection is closed; gone() is called when the kernel goes, as JupyterLab
 // tells at once and elsewhere the next send.
-function kernelOf(model) {
+export function kernelOf(model) {
   const known = () => model.widget_manager?.kernel;
   const signals = [known()?.statusChanged, known()?.disposed];
   let watching;

@@ -1,8 +1,10 @@
-// PID loops whose torque may come late: their runs, and the linear loop around a posture. Follows
-// engine.js. `modes` is what engine/_loops.py writes.
+// PID loops whose torque may come late: their runs, and the linear loop around a posture. `modes` is
+// what engine/_loops.py writes.
+
+import { JOINTS, drive } from "./engine.js";
 
 // A law whose torque comes some control periods late; zero until its first comes.
-function behind(periods, law) {
+export function behind(periods, law) {
   const waiting = Array.from({ length: periods }, () => [0, 0]);
   return (...seen) => {
     waiting.push(law(...seen));
@@ -12,7 +14,7 @@ function behind(periods, law) {
 
 // Follow a reference; the run is over at the first logged sample with a joint's error beyond `most`
 // (rad), whose place `stopped` then is.
-function guarded(plant, law, reference, step, every, most) {
+export function guarded(plant, law, reference, step, every, most) {
   const run = drive(plant, reference.q[0], [0, 0], step);
   const log = { q: [], tau: [], stopped: null };
   for (let k = 0; k < reference.q.length; k++) {
@@ -39,7 +41,7 @@ const periodOf = ({ rate }, step) => {
 };
 
 // How fast the slowest or least stable motion of the closed loop grows, 1/s; negative if it dies out.
-function growthOf(modes, { kp, ki, kd }, step, late) {
+export function growthOf(modes, { kp, ki, kd }, step, late) {
   const integral = ki.some(Boolean);
   const waiting = integral ? 6 : 4; // places of the torques on their way
   const n = waiting + 2 * late;
@@ -97,7 +99,7 @@ function logRadius(A, n) {
 
 // The largest part of a loop's gains, together or its integral alone, with which it is stable; NaN if
 // none is, down to a thousandth.
-function calmPart(modes, gains, step, late, names = ["kp", "ki", "kd"]) {
+export function calmPart(modes, gains, step, late, names = ["kp", "ki", "kd"]) {
   const stable = (part) => {
     const less = names.map((name) => [name, gains[name].map((x) => part * x)]);
     return growthOf(modes, { ...gains, ...Object.fromEntries(less) }, step, late) < 0;
@@ -140,7 +142,7 @@ function openLoop(modes, { kp, ki, kd }, step, late, joint, omega) {
 }
 
 // Phase margin (degrees) and crossover (rad/s) of such a loop; NaN if its gain is never 1.
-function marginOf(modes, gains, step, late, joint) {
+export function marginOf(modes, gains, step, late, joint) {
   const loop = (x) => openLoop(modes, gains, step, late, joint, Math.exp(x));
   const loud = (x) => Math.hypot(...loop(x)) > 1;
   const [low, high, parts] = [Math.log(0.01), Math.log(Math.PI / step), 160];

@@ -46,3 +46,9 @@ export function format(value, low, high, unit = "", digits = null) {
   const fixed = value.toFixed(decimals).replace(/^-(?=[0.]*$)/, "").replace("-", "−");
   return unit ? `${fixed}${unit === "°" ? "" : "\u00a0"}${unit}` : fixed;
 }
+
+// A power of ten as text: whole ones with thousands apart, others with three digits.
+export function powerText(x) {
+  const value = Number((10 ** x).toPrecision(3));
+  return value >= 1e-4 && value < 1e7 ? value.toLocaleString("en-US", { maximumFractionDigits: 6 }) : String(value).replace("-", "−");
+}

@@ -1,6 +1,8 @@
 // Parameters of a widget (parts/parameters.py): a value as a part of the range, as a place in the grid,
 // in words. Python has checked the description; what comes from elsewhere is brought into its range.
 
+import { format, nice, ticks } from "./numbers.js";
+
 export const toFraction = (p, value) =>
   p.scale === "log"
     ? Math.log(value / p.low) / Math.log(p.high / p.low)

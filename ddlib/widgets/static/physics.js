@@ -3,19 +3,19 @@
 // (kg m^2) and gravity moments g1, g2 (N m).
 
 // The nearest whole number, the even one of two that are as near.
-function rint(x) {
+export function rint(x) {
   const near = Math.round(x);
   return near - x === 0.5 && near % 2 ? near - 1 : near;
 }
 
 // Entries 11, 12 and 22 of the mass matrix (kg m^2).
-function armMass({ a, b, d }, q2) {
+export function armMass({ a, b, d }, q2) {
   const c = b * Math.cos(q2);
   return [a + 2 * c, d + c, d];
 }
 
 // Torques (N m) of angles (rad), velocities (rad/s) and accelerations (rad/s^2).
-function armTorque(arm, q1, q2, qd1, qd2, qdd1, qdd2) {
+export function armTorque(arm, q1, q2, qd1, qd2, qdd1, qdd2) {
   const [m11, m12, m22] = armMass(arm, q2);
   const h = arm.b * Math.sin(q2);
   const g = arm.g2 * Math.sin(q1 + q2);
@@ -24,7 +24,7 @@ function armTorque(arm, q1, q2, qd1, qd2, qdd1, qdd2) {
 }
 
 // Accelerations (rad/s^2) under torques t1, t2 (N m): the mass matrix solved by Cramer's rule.
-function armAcceleration({ a, b, d, g1, g2 }, q1, q2, qd1, qd2, t1, t2) {
+export function armAcceleration({ a, b, d, g1, g2 }, q1, q2, qd1, qd2, t1, t2) {
   const c = b * Math.cos(q2);
   const h = b * Math.sin(q2);
   const g = g2 * Math.sin(q1 + q2);
@@ -36,11 +36,11 @@ function armAcceleration({ a, b, d, g1, g2 }, q1, q2, qd1, qd2, t1, t2) {
 }
 
 // Viscous and Coulomb friction (N m) of a joint at the velocity v (rad/s).
-function frictionTorque(viscous, coulomb, smoothing, v) {
+export function frictionTorque(viscous, coulomb, smoothing, v) {
   return viscous * v + coulomb * Math.tanh(v / smoothing);
 }
 
 // An angle (rad) as the encoder reads it.
-function encoderReading(step, x) {
+export function encoderReading(step, x) {
   return step * rint(x / step);
 }

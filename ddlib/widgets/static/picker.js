@@ -1,6 +1,15 @@
 // What TrajectoryPicker (picker.py) computes, and what it adds to a CurveWidget: the map of errors
-// under the pad, the arm, its player, the verdict about the hull of the training trajectories, and
-// the button that records. The numbers stand beside the pad. Follows sliding.js.
+// under the pad, the arm, its player, the verdict about the hull of the training trajectories, and the
+// button that records. The numbers stand beside the pad.
+
+import { clockOf } from "./clock.js";
+import { PATIENCE, computes, extras } from "./curves.js";
+import { buttonOf, make, put, short, write } from "./elements.js";
+import { JOINTS, NAMES, pickAndPlace, placesOf, recordingOf } from "./engine.js";
+import { kernelOf } from "./kernel.js";
+import { insidePolygon } from "./numbers.js";
+import { armTorque } from "./physics.js";
+import { modelsOf, scaledOf, toldTorques } from "./sliding.js";
 
 // All curves and numbers of a trajectory.
 function picked(loop, models, extents) {
@@ -31,7 +40,7 @@ function picked(loop, models, extents) {
   return { curves, log };
 }
 
-live = (view) => {
+computes((view) => {
   const loop = view.model.get("loop");
   view.networks ??= modelsOf(loop.models, view.model.get("weights"));
   const extents = NAMES.map((joint) => (view.get(`${joint}_deg`) * Math.PI) / 180);
@@ -39,7 +48,7 @@ live = (view) => {
     view.picked = { key: String(extents), ...picked(loop, view.networks, extents) };
   }
   return view.picked.curves;
-};
+});
 
 const FINE = 3; // parts of the map's grid in which it is drawn
 const LEVELS = 10; // the last one is open to above

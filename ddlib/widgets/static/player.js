@@ -1,6 +1,9 @@
 // What TrainingPlayer (player.py) adds to a HintonWidget: a button that steps over the epochs, its
 // speed, and a loop. The film begins at the trait `begin`, if there is one.
 
+import { extras } from "./curves.js";
+import { make } from "./elements.js";
+
 const SPEEDS = { slow: 400, normal: 130, fast: 45 }; // ms a picture
 
 extras.push((view) => {

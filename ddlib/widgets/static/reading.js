@@ -1,8 +1,11 @@
-// Values of a chart: at the sample nearest to the pointer, or with focus at one that the arrow
-// keys choose. Follows elements.js.
+// Values of a chart: at the sample nearest to the pointer, or with focus at one that the arrow keys
+// choose.
+
+import { COLOURS, make, onKeys, put, short, swatch, write } from "./elements.js";
+import { format, powerText } from "./numbers.js";
 
 // A label such as "time, s" as a quantity and what follows a number.
-function unitOf(label) {
+export function unitOf(label) {
   const cut = label.lastIndexOf(", ");
   const unit = label.slice(cut + 2);
   return cut > 0 && unit.length <= 10 ? [label.slice(0, cut), unit] : [label, ""];
@@ -10,7 +13,7 @@ function unitOf(label) {
 
 // `plot` has: el, svg, panel, curves, samples (places in px), top(), bottom(), left(), right(),
 // text(curve, i) and place(curve, i) of a value, in words and in px, and say(text).
-function readerOf(plot) {
+export function readerOf(plot) {
   const { el, svg, panel, curves } = plot;
   const [quantity, unit] = unitOf(panel.x_label);
   const [low, high] = [panel.x[0], panel.x.at(-1)];

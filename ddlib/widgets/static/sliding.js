@@ -1,7 +1,10 @@
-// Window networks along a recording. Follows engine.js. Layouts, scalings and weights are what
-// `networks` in _plain.py writes.
+// Window networks along a recording. Layouts, scalings and weights are what `networks` in _plain.py
+// writes.
 
-function modelsOf(layouts, bytes) {
+import { numbersOf } from "./elements.js";
+import { JOINTS, activity, networkOf, torqueOfOutput } from "./engine.js";
+
+export function modelsOf(layouts, bytes) {
   const all = numbersOf(bytes, "Float32");
   let at = 0;
   const models = layouts.map((model) => {
@@ -15,18 +18,18 @@ function modelsOf(layouts, bytes) {
 }
 
 // Positions (rad), joint by joint, scaled for a network's input units.
-const scaledOf = ({ inputs: { low, gain, first } }, positions) =>
+export const scaledOf = ({ inputs: { low, gain, first } }, positions) =>
   positions.map((x, j) => x.map((q) => first + (q - low[j]) * gain[j]));
 
 // The window around a sample of scaled positions.
-function windowAt({ net }, scaled, k, window = new Float64Array(net.inputs)) {
+export function windowAt({ net }, scaled, k, window = new Float64Array(net.inputs)) {
   const first = k - (net.width >> 1);
   scaled.forEach((x, j) => window.set(x.subarray(first, first + net.width), j * net.width));
   return window;
 }
 
 // Torques (N m) that a network tells at the samples `from` to `to`, a pair for each.
-function toldTorques(model, scaled, from, to) {
+export function toldTorques(model, scaled, from, to) {
   const { net } = model;
   const [window, hidden, output] = [net.inputs, net.hidden, net.outputs].map((n) => new Float64Array(n));
   return Array.from({ length: to - from }, (_, k) => {
@@ -37,7 +40,7 @@ function toldTorques(model, scaled, from, to) {
 
 // Positions (rad), joint by joint, and torques (N m) of the motion, from their bytes; positions reach
 // `reach` samples beyond it on either side.
-function recordedOf(bytes, samples, reach) {
+export function recordedOf(bytes, samples, reach) {
   const all = numbersOf(bytes, "Float64");
   const [around, wanted] = [samples + 2 * reach, 2 * (2 * samples + 2 * reach)];
   if (all.length !== wanted) throw new Error(`${all.length} numbers in place of ${wanted}`);

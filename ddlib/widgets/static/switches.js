@@ -1,4 +1,9 @@
-// What RealArmSwitches (switches.py) computes and shows. Follows loops.js.
+// What RealArmSwitches (switches.py) computes and shows.
+
+import { computes, extras } from "./curves.js";
+import { buttonOf, make } from "./elements.js";
+import { NAMES, follow, pid, referenceOf } from "./engine.js";
+import { behind } from "./loops.js";
 
 const DEGREES = 180 / Math.PI;
 
@@ -23,7 +28,7 @@ function switched(loop, chosen) {
   return { ...log, error: log.q.map((q, k) => (reference.q[k][0] - q[0]) * DEGREES) };
 }
 
-live = (view) => {
+computes((view) => {
   const loop = view.model.get("loop");
   const chosen = Object.fromEntries(view.spec.parameters.map((p) => [p.name, view.get(p.name)]));
   const key = JSON.stringify(chosen);
@@ -49,7 +54,7 @@ live = (view) => {
   });
   Object.assign(view, { key, found });
   return found;
-};
+});
 
 // In place of menus: a switch for each effect, its strength, and the effect alone.
 extras.push((view) => {

@@ -1,9 +1,11 @@
 // Reads the table of a widget's curves (table.py).
 
+import { numbersOf } from "./elements.js";
+
 const LAST = 2 ** 16 - 1; // largest integer: the upper end of a curve's range
 
 // How many numbers a list of curves has together.
-const samplesOf = (curves) => curves.reduce((sum, { length }) => sum + length, 0);
+export const samplesOf = (curves) => curves.reduce((sum, { length }) => sum + length, 0);
 
 // The table's curves, each with its first place in the table, and the table's integers.
 export function readTable(spec, bytes) {

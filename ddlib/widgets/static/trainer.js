@@ -1,5 +1,16 @@
-// Shows NetworkTrainer (engine/trainer.py): a network that learns in the page. Follows charts.js,
-// frame.js, dragging.js, and the engine with descent.js and experiment.js.
+// Shows NetworkTrainer (engine/trainer.py): a network that learns in the page.
+
+import { coloursOf, sheet, stroke } from "./canvas.js";
+import { chart } from "./charts.js";
+import { descent } from "./descent.js";
+import {
+  buttonOf, dress, freshId, make, numbersOf, onRecolour, safely, swatch, tableOf, write,
+} from "./elements.js";
+import { JOINTS, NAMES, activity, networkOf, torqueOfOutput } from "./engine.js";
+import { accelerationGain, meanGradient, picksOf, recordingAt, scalingOf } from "./experiment.js";
+import { filled, frameOf } from "./frame.js";
+import { format } from "./numbers.js";
+import { armMass } from "./physics.js";
 
 const BUDGET = 7; // ms of a frame that may be spent on epochs
 const REST = 2500; // ms between two runs of the loop
@@ -224,7 +235,10 @@ function build({ model, el }) {
   const noise = numbersOf(model.get("noise"), "Float32");
   dress(el, spec.title, "ddlib-trainer");
 
-  const start = { seed: 1, torques: "real", inputs: "printed", step: "1", momentum: String(spec.momentum), speed: "fast", loop: "", guess: "" };
+  const start = {
+    ...{ seed: spec.start.seed, torques: "real", inputs: spec.start.inputs, step: String(spec.start.step) },
+    ...{ momentum: String(spec.start.momentum), speed: "fast", loop: "", guess: "" },
+  };
   const asked = () => ({
     seed: model.get("seed"),
     torques: model.get("shifted") ? "shifted" : "real",

@@ -1,6 +1,11 @@
 // What StirringPicker (beyond/stirring.py) adds to a CurveWidget: the workspace as a pad, in which
 // the circle is dragged, and the refusal of circles that the hand cannot follow.
 
+import { computes, extras } from "ddlib/curves.js";
+import { besideOf, draggable } from "ddlib/dragging.js";
+import { make, onKeys, put, short, write } from "ddlib/elements.js";
+import { show } from "ddlib/parameters.js";
+
 // Elbow and hand, m, of two links of given lengths at joint angles in degrees.
 function armAt([l1, l2], first, second) {
   const [a, b] = [first, first + second].map((angle) => (angle * Math.PI) / 180);
@@ -10,7 +15,7 @@ function armAt([l1, l2], first, second) {
 
 // Joint angles in degrees of a hand that goes round once in `period` seconds, from the far point; zero
 // for a circle that it cannot follow.
-live = (view) => {
+computes((view) => {
   const { lengths: [l1, l2], reach, times } = view.model.get("workspace");
   const [distance, bearing, radius, period, elbow] = view.values;
   const refused = distance + radius >= reach[1] || distance - radius <= reach[0];
@@ -29,7 +34,7 @@ live = (view) => {
   }
   const none = times.map(() => 0);
   return { "shoulder angle": refused ? none : first, "elbow angle": refused ? none : second };
-};
+});
 
 extras.push((view) => {
   const { spec } = view;

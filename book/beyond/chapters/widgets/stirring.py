@@ -14,9 +14,10 @@ from ddlib.figures import JOINTS
 from ddlib.setups import JOINT_DAMPING
 from ddlib.simulation import LOG_STEP
 from ddlib.trajectories import MOTION_SECONDS
-from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
+from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.parts.parameters import Choice
+from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.table import Live
 from workshop.report import results
 
@@ -53,8 +54,8 @@ class StirringPicker(CurveWidget):
     sentence. Its curves are zero. `path` holds what the study ``stirring`` kept.
     """
 
-    _esm = module(*SCRIPT, _HERE / "stirring.js")
-    _css = module(*STYLE, _HERE / "stirring.css")
+    _esm = bundle(_HERE / "stirring.js")
+    _css = styles(_HERE / "stirring.css")
 
     workspace = t.Dict(help="lengths, reach, part that is drawn, m; times, s", read_only=True)
     workspace.tag(sync=True)

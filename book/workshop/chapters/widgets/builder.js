@@ -1,5 +1,13 @@
-// Shows FilterBuilder (engine/builder.py): a window of stems that the reader draws, its output
-// over the truth, its gain. Follows charts.js and frame.js; the encoder is physics.js's.
+// Shows FilterBuilder (engine/builder.py): a window of stems that the reader draws, its output over the
+// truth, its gain.
+
+import { chart } from "ddlib/charts.js";
+import { draggable } from "ddlib/dragging.js";
+import {
+  buttonOf, dress, freshId, make, numbersOf, onKeys, put, safely, short, tableOf, write,
+} from "ddlib/elements.js";
+import { frameOf } from "ddlib/frame.js";
+import { encoderReading } from "ddlib/physics.js";
 
 const NEAR = 28; // px from a stem within which a touch takes it; elsewhere a swipe up or down scrolls
 const MINUS = (text) => text.replace("-", "−");

@@ -14,9 +14,10 @@ from ddlib.learning import sliding_windows
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, Setup, split, true_states
 from ddlib.simulation import LOG_STEP
-from ddlib.widgets.base import SCRIPT, STYLE, PageWidget, module
-from ddlib.widgets.engine._plain import lean, plant
+from ddlib.widgets.base import PageWidget
+from ddlib.widgets.engine._plain import plant
 from ddlib.widgets.parts.panels import Panel
+from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.still import still_picture
 
 _HERE = Path(__file__).parent
@@ -118,11 +119,8 @@ class FilterBuilder(PageWidget):
         Whose shoulder moves along trajectory 6, and whose encoder, if any, reads it.
     """
 
-    _esm = lean(
-        module(*(name for name in SCRIPT if name not in ("controls.js", "curves.js")))
-        + module("physics.js", _HERE / "builder.js")
-    )
-    _css = module(*STYLE, _HERE / "builder.css")
+    _esm = bundle(_HERE / "builder.js")
+    _css = styles(_HERE / "builder.css")
 
     motion = t.Bytes(help="true positions, then accelerations, as float64", read_only=True)
     motion.tag(sync=True)

@@ -1,4 +1,9 @@
-// What FeedforwardSwitches (feedforward.py) computes and shows. Follows engine.js.
+// What FeedforwardSwitches (feedforward.py) computes and shows.
+
+import { computes, extras } from "ddlib/curves.js";
+import { make, write } from "ddlib/elements.js";
+import { NAMES, follow, pid, referenceOf } from "ddlib/engine.js";
+import { armTorque, frictionTorque } from "ddlib/physics.js";
 
 const DEGREES = 180 / Math.PI;
 
@@ -57,12 +62,12 @@ function figureOf(loop, { model, masses, known, feedback, friction, jump }) {
   return { curves, torques: { ahead: rms(curves["shoulder ahead"]), back: rms(curves["shoulder back"]) } };
 }
 
-live = (view) => {
+computes((view) => {
   const setting = Object.fromEntries(view.spec.parameters.map((p) => [p.name, view.get(p.name)]));
   const key = JSON.stringify(setting);
   if (view.key !== key) Object.assign(view, { key, found: figureOf(view.model.get("loop"), setting) });
   return view.found.curves;
-};
+});
 
 // Figure 2-1, whose boxes and arrows say what is switched.
 extras.push((view) => {

@@ -27,10 +27,11 @@ from ddlib.trajectories import (
     pick_and_place,
     smooth_pick_and_place,
 )
-from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
-from ddlib.widgets.engine._plain import ENGINE, gains, lean, plant
+from ddlib.widgets.base import CurveWidget
+from ddlib.widgets.engine._plain import gains, plant
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice, Parameter
+from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.table import Live
 
 _HERE = Path(__file__).parent
@@ -69,8 +70,8 @@ class FeedforwardSwitches(CurveWidget):
         Passed on to `CurveWidget`.
     """
 
-    _esm = module(*SCRIPT) + lean(module(*ENGINE, _HERE / "feedforward.js"))
-    _css = module(*STYLE, _HERE / "feedforward.css")
+    _esm = bundle(_HERE / "feedforward.js")
+    _css = styles(_HERE / "feedforward.css")
 
     loop = t.Dict(help="plant, gains and references", read_only=True).tag(sync=True)
 

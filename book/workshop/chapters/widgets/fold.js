@@ -1,6 +1,8 @@
 // What FilterFold (fold.py) computes: all curves are sums over a row's parts.
 
-live = (view) => {
+import { computes } from "ddlib/curves.js";
+
+computes((view) => {
   const { time, rows } = view.model.get("folding");
   const { parts, ends } = rows[view.get("row")];
   const [angle, speed, acceleration] = ["angle", "speed", "acceleration"].map(view.get);
@@ -11,4 +13,4 @@ live = (view) => {
   const [constant, even, odd] = parts.map((part) => part.map((f) => share * f));
   const left = time.map((_, i) => (1 - share) * whole(parts.map((part) => part[i])));
   return { left, constant, even, odd, window, answers: [...answers, whole(answers)], ...ends };
-};
+});

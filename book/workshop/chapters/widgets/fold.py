@@ -11,9 +11,10 @@ import traitlets as t
 
 from ddlib._check import integer, number, shaped, told
 from ddlib.analysis import decompose
-from ddlib.widgets.base import SCRIPT, CurveWidget, Panel, module
+from ddlib.widgets.base import CurveWidget, Panel
 from ddlib.widgets.hinton import CENTRE
 from ddlib.widgets.parts.parameters import Choice, Parameter, Presets
+from ddlib.widgets.scripts import bundle
 from ddlib.widgets.table import Live
 
 _HERE = Path(__file__).parent
@@ -36,7 +37,7 @@ class FilterFold(CurveWidget):
         Passed on to `CurveWidget`.
     """
 
-    _esm = module(*SCRIPT, _HERE / "fold.js")
+    _esm = bundle(_HERE / "fold.js")
 
     folding = t.Dict(help="time of the samples, parts and axes of rows", read_only=True)
     folding.tag(sync=True)

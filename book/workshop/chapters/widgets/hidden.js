@@ -1,7 +1,11 @@
-// What HiddenTorque (window.py) shows. Follows sliding.js. Its torque is covered from the window's
-// first sample on, unless the reader has it uncovered.
+// What HiddenTorque (window.py) shows. Its torque is covered from the window's first sample on, unless
+// the reader has it uncovered.
 
-live = (view) => {
+import { computes } from "ddlib/curves.js";
+import { NAMES } from "ddlib/engine.js";
+import { recordedOf } from "ddlib/sliding.js";
+
+computes((view) => {
   const { model, spec } = view;
   const [whole, part] = spec.panels;
   const [samples, width] = [whole.x.length, part.x.length];
@@ -22,4 +26,4 @@ live = (view) => {
     ...{ position: degrees.slice(half, half + samples), inside, chord, torque, low: [-most], high: [most] },
     ...{ from: end(whole.x[sample] - reach), to: end(whole.x[sample] + reach) },
   };
-};
+});

@@ -1,5 +1,10 @@
 // "Look inside": one row of the network's weights, folded into a constant, a line and a parabola, and
-// what the latter two measure while the arm moves. Follows world.js and running.js.
+// what the latter two measure while the arm moves.
+
+import { buttonOf, make, put, short, write } from "ddlib/elements.js";
+import { NAMES } from "ddlib/engine.js";
+import { keyOf, stems, timeChart } from "./running.js";
+import { folded } from "./world.js";
 
 // The network from window to torques, with one row of its weights marked. Activity fills its units.
 function netOf(hidden) {
@@ -50,7 +55,7 @@ function netOf(hidden) {
   return { el, choose, draw };
 }
 
-function insideOf(world, spec, id) {
+export function insideOf(world, spec, id) {
   const { net } = world.model;
   let chosen = spec.units[0];
   let fold = 1;

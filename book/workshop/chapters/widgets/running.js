@@ -1,10 +1,14 @@
-// Charts that run with time, on canvases. Follows elements.js and canvas.js. Samples are the world's.
+// Charts that run with time, on canvases. Samples are the world's.
+
+import { sheet, stroke } from "ddlib/canvas.js";
+import { make } from "ddlib/elements.js";
+import { JOINTS } from "ddlib/engine.js";
 
 const SHOWN = 300; // samples of a chart: 3 s
 const MARGIN = { left: 40, right: 6 };
 
 // A legend's entry: a line of a kind, and what it is.
-function keyOf(kind, text) {
+export function keyOf(kind, text) {
   const line = make("path", { class: `key ${kind}`, d: "M0 5H22" });
   return make("span", {}, make("svg", { width: 22, height: 10, "aria-hidden": "true" }, line), text);
 }
@@ -18,7 +22,7 @@ function roundStep(range, count) {
 
 // A chart of the last seconds. `lines`: { colour, width, dash, of(sample) -> number or undefined };
 // [low, high] is the range that it shows at least; `bottom` says whether it has the axis of time.
-function timeChart({ height, label, low, high, lines, bottom = false }) {
+export function timeChart({ height, label, low, high, lines, bottom = false }) {
   const place = sheet(height, label);
   const { pen } = place;
   place.drawnBy((samples, phase, colours) => {
@@ -83,7 +87,7 @@ function timeChart({ height, label, low, high, lines, bottom = false }) {
 }
 
 // The strip of positions under a window that stands: two rows of dots, the newest at the right.
-function strip({ height, label, width: samplesInWindow, lows, highs }) {
+export function strip({ height, label, width: samplesInWindow, lows, highs }) {
   const place = sheet(height, label);
   const { pen } = place;
   const format = (x) => `${Math.round((x * 180) / Math.PI)}°`.replace("-", "−");
@@ -146,7 +150,7 @@ function strip({ height, label, width: samplesInWindow, lows, highs }) {
 
 // Weights over a window as stems; `values` and the size of the largest are given at each drawing,
 // and what stands pale behind them, if anything does.
-function stems({ height, label, colour }) {
+export function stems({ height, label, colour }) {
   const place = sheet(height, label);
   const { pen } = place;
   place.drawnBy((values, largest, colours, pale = []) => {

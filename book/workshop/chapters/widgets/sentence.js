@@ -1,5 +1,9 @@
-// Shows a LiveSentence (engine/sentence.py): numbers to drag or to step, and an end that is
-// computed. Follows frame.js and loops.js.
+// Shows a LiveSentence (engine/sentence.py): numbers to drag or to step, and an end that is computed.
+
+import { buttonOf, dress, make, onKeys, put, write } from "ddlib/elements.js";
+import { filled, frameOf, python } from "ddlib/frame.js";
+import { growthOf } from "ddlib/loops.js";
+import { armTorque } from "ddlib/physics.js";
 
 // What each kind of sentence computes: texts by the names of its results.
 const ENDS = {

@@ -15,11 +15,12 @@ from ddlib.effects import IDEAL
 from ddlib.figures import illustrate
 from ddlib.setups import JOINT_DAMPING_KP as KP, JOINT_DAMPING_VISCOUS
 from ddlib.simulation import CONTROL_STEP
-from ddlib.widgets.base import _FRAME, STYLE, PageWidget, module
-from ddlib.widgets.engine._loops import LOOPS, linear, modes
-from ddlib.widgets.engine._plain import ENGINE, lean, plant
+from ddlib.widgets.base import PageWidget
+from ddlib.widgets.engine._loops import linear, modes
+from ddlib.widgets.engine._plain import plant
 from ddlib.widgets.parts._common import key_of
 from ddlib.widgets.parts.parameters import Parameter
+from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.still import START, encoded
 
 _HERE = Path(__file__).parent
@@ -37,8 +38,8 @@ class _LiveSentence(PageWidget):
     the Python `code` names of numbers in braces stand for their values.
     """
 
-    _esm = lean(module(*_FRAME, *ENGINE, LOOPS, _HERE / "sentence.js"))
-    _css = module(*STYLE, _HERE / "sentence.css")
+    _esm = bundle(_HERE / "sentence.js")
+    _css = styles(_HERE / "sentence.css")
 
     values = t.Dict(help="the numbers by name").tag(sync=True)
 

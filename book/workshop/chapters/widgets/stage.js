@@ -1,7 +1,10 @@
-// Arms seen from above, drawn over each other. Follows elements.js and engine.js.
+// Arms seen from above, drawn over each other.
+
+import { make, put, short } from "ddlib/elements.js";
+import { placesOf } from "ddlib/engine.js";
 
 // `kinds` are names of arms, the lowest first; `place(kind, q)` draws one at joint angles in rad.
-function armsOf(lengths, kinds, [left, bottom, right, top], label) {
+export function armsOf(lengths, kinds, [left, bottom, right, top], label) {
   const scale = 300 / (right - left);
   const x = (v) => short(scale * (v - left));
   const y = (v) => short(scale * (top - v));

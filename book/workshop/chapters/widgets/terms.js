@@ -1,5 +1,12 @@
-// What TorqueTerms (terms.py) computes and adds to a CurveWidget: the arm along its motion, the
-// torque of each joint as an arrow, the terms as a table, and two guesses. Follows stage.js.
+// What TorqueTerms (terms.py) computes and adds to a CurveWidget: the arm along its motion, the torque
+// of each joint as an arrow, the terms as a table, and two guesses.
+
+import { clockOf } from "ddlib/clock.js";
+import { computes, extras } from "ddlib/curves.js";
+import { buttonOf, make, short, swatch, write } from "ddlib/elements.js";
+import { JOINTS, NAMES, pickAndPlace, placesOf } from "ddlib/engine.js";
+import { armTorque, frictionTorque } from "ddlib/physics.js";
+import { armsOf } from "./stage.js";
 
 const [SUM, FRICTION, BEFORE] = ["whole torque", "friction", "at single speed"];
 const LETTERS = "ABCD";
@@ -35,7 +42,7 @@ function motionOf(view, doubled = view.get("doubled")) {
   return { seconds, stateAt, at };
 }
 
-live = (view) => {
+computes((view) => {
   const { terms } = view.model.get("moving");
   const along = ({ at }) => view.spec.panels[0].x.map((done) => at(done / 100));
   const all = along(motionOf(view));
@@ -48,7 +55,7 @@ live = (view) => {
     curves[`${joint} ratio`] = [(100 * sum("centrifugal", "Coriolis")) / sum("inertial", "coupling")];
   });
   return curves;
-};
+});
 
 // An arrow around a joint (px), anticlockwise for a positive torque: `share` of the largest one.
 function turnOf(radius) {

@@ -13,10 +13,11 @@ from ddlib.effects import Effects
 from ddlib.figures import JOINTS
 from ddlib.setups import JOINT_DAMPING, Setup
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, pick_and_place
-from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
-from ddlib.widgets.engine._plain import ENGINE, lean, plant
+from ddlib.widgets.base import CurveWidget
+from ddlib.widgets.engine._plain import plant
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
+from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.table import Live
 
 _HERE = Path(__file__).parent
@@ -57,10 +58,8 @@ class TorqueTerms(CurveWidget):
         Passed on to `CurveWidget`.
     """
 
-    _esm = module(*SCRIPT) + lean(
-        module(*ENGINE, "clock.js", _HERE / "stage.js", _HERE / "terms.js")
-    )
-    _css = module(*STYLE, _HERE / "terms.css")
+    _esm = bundle(_HERE / "terms.js")
+    _css = styles(_HERE / "terms.css")
 
     moving = t.Dict(help="arms by load, friction, extents in rad", read_only=True).tag(sync=True)
 

@@ -1,5 +1,14 @@
-// Shows ThrownArm (engine/throw.py): the arm with a handle at its hand, the strip of positions
-// under the window, true torques and the network's. Follows inside.js. Everything is computed here.
+// Shows ThrownArm (engine/throw.py): the arm with a handle at its hand, the strip of positions under
+// the window, true torques and the network's. Everything is computed here.
+
+import { coloursOf } from "ddlib/canvas.js";
+import {
+  buttonOf, dress, freshId, make, numbersOf, onKeys, onRecolour, put, safely, short, write,
+} from "ddlib/elements.js";
+import { placesOf } from "ddlib/engine.js";
+import { insideOf } from "./inside.js";
+import { keyOf, strip, timeChart } from "./running.js";
+import { worldOf } from "./world.js";
 
 const METRE = 200; // px of the drawing
 const NUDGE = 120; // ms that a key pulls at least

@@ -15,8 +15,9 @@ from ddlib.paper import TEST_TRAJECTORY
 from ddlib.setups import JOINT_DAMPING, Setup, predict
 from ddlib.simulation import CONTROL_STEP, LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS
-from ddlib.widgets.base import STYLE, PageWidget, module
-from ddlib.widgets.engine._plain import ENGINE, _weight_bytes, gains, lean, network, plant
+from ddlib.widgets.base import PageWidget
+from ddlib.widgets.engine._plain import _weight_bytes, gains, network, plant
+from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.still import START, encoded
 
 _HERE = Path(__file__).parent
@@ -52,18 +53,8 @@ class ThrownArm(PageWidget):
         What *Code* copies, with ``{motion}`` for the trajectory's place in Appendix I.
     """
 
-    _esm = lean(
-        module(
-            "elements.js",
-            *ENGINE,
-            _HERE / "world.js",
-            "canvas.js",
-            _HERE / "running.js",
-            _HERE / "inside.js",
-            _HERE / "throw.js",
-        )
-    )
-    _css = module(*STYLE, _HERE / "throw.css")
+    _esm = bundle(_HERE / "throw.js")
+    _css = styles(_HERE / "throw.css")
 
     weights = t.Bytes(help="the network's weights as float32", read_only=True).tag(sync=True)
 
@@ -126,7 +117,7 @@ def _still(model: TorqueModel, setup: Setup) -> tuple[str, str]:
     """A motion with true torques and the network's, a row folded, and what the picture shows."""
     recording = setup.record(APPENDIX_I[[TEST_TRAJECTORY - 1]])[0]
     moving = recording.motion
-    time, told = recording.t[moving], predict(model, recording)
+    time, predicted = recording.t[moving], predict(model, recording)
     unit = _units(model)[0]
     row = model.weights.hidden_weights[unit["unit"], unit["joint"]]
     at, along = np.arange(len(row)) - len(row) // 2, basis(len(row))[:3]
@@ -145,7 +136,7 @@ def _still(model: TorqueModel, setup: Setup) -> tuple[str, str]:
         for j, (joint, axis) in enumerate(zip(JOINTS, torques)):
             angles.plot(time, np.rad2deg(recording.q[moving, j]), DASHES[j], label=joint)
             axis.plot(time, recording.tau_true[moving, j], color=INK, label="true")
-            axis.plot(time, told[:, j], "--", color=COLOURS[1], label="network")
+            axis.plot(time, predicted[:, j], "--", color=COLOURS[1], label="network")
             axis.set(title=f"{joint.title()} torque, N m", xlabel="time, s")
         angles.set(title="Positions, °", xlabel="time, s")
         for axis in (angles, *torques):

@@ -1,4 +1,11 @@
-// What PIDTuner (tuner.py) computes and shows. Follows loops.js and stage.js.
+// What PIDTuner (tuner.py) computes and shows.
+
+import { clockOf } from "ddlib/clock.js";
+import { computes, extras } from "ddlib/curves.js";
+import { buttonOf, make, write } from "ddlib/elements.js";
+import { JOINTS, NAMES, feedforward, pid, referenceOf } from "ddlib/engine.js";
+import { behind, calmPart, growthOf, guarded, marginOf } from "ddlib/loops.js";
+import { armsOf } from "./stage.js";
 
 const PAUSE = 800; // ms without a change after which a setting is the one before the next
 const THOUGHT = 250; // ms without a change after which it is sought what would make a loop stable
@@ -42,7 +49,7 @@ function memory(loop, most = 4) {
   };
 }
 
-live = (view) => {
+computes((view) => {
   const { model, spec } = view;
   view.tuned ??= memory(model.get("loop"));
   const setting = Object.fromEntries(spec.parameters.map((p) => [p.name, view.get(p.name)]));
@@ -65,7 +72,7 @@ live = (view) => {
     }
   });
   return curves;
-};
+});
 
 extras.push((view) => {
   const { model, spec, el } = view;

@@ -17,11 +17,12 @@ from ddlib.paper import TEST_TRAJECTORY
 from ddlib.setups import JOINT_DAMPING_KP as KP, JOINT_DAMPING_VISCOUS
 from ddlib.simulation import CONTROL_STEP, LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
-from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
-from ddlib.widgets.engine._loops import LOOPS, controller, linear, modes, run
-from ddlib.widgets.engine._plain import ENGINE, lean, plant
+from ddlib.widgets.base import CurveWidget
+from ddlib.widgets.engine._loops import controller, linear, modes, run
+from ddlib.widgets.engine._plain import plant
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice, Parameter
+from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.table import Live
 
 _HERE = Path(__file__).parent
@@ -170,10 +171,8 @@ class PIDTuner(CurveWidget):
         Passed on to `CurveWidget`.
     """
 
-    _esm = module(*SCRIPT) + lean(
-        module(*ENGINE, LOOPS, _HERE / "stage.js", "clock.js", _HERE / "tuner.js")
-    )
-    _css = module(*STYLE, _HERE / "tuner.css")
+    _esm = bundle(_HERE / "tuner.js")
+    _css = styles(_HERE / "tuner.css")
 
     before = t.Dict(help="the setting before this one, which the ghost has").tag(sync=True)
     loop = t.Dict(help="plant, modes, reference and questions", read_only=True).tag(sync=True)

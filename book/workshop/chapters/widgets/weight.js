@@ -1,6 +1,9 @@
 // What OneWeight (weight.py) computes, and what it adds to a CurveWidget: the unit as a picture, the
 // buttons that step, and the steps as points on the curve of the error.
 
+import { computes, extras } from "ddlib/curves.js";
+import { buttonOf, make, put, short, write } from "ddlib/elements.js";
+
 const WANTED = 0.7;
 
 function unitAt(weight) {
@@ -13,7 +16,7 @@ function unitAt(weight) {
 const changeOf = (view) =>
   view.get("momentum") * view.walk.last - view.get("size") * unitAt(view.get("weight")).slope;
 
-live = (view) => {
+computes((view) => {
   const weight = view.get("weight");
   view.walk ??= { last: 0, at: weight, past: [] };
   if (weight !== view.walk.at) Object.assign(view.walk, { last: 0, at: weight, past: [] }); // by hand
@@ -30,7 +33,7 @@ live = (view) => {
     slope: [slope],
     step: [changeOf(view)],
   };
-};
+});
 
 // The unit: a wire as thick as its weight, the answer as a level between 0 and 1.
 function drawnUnit() {

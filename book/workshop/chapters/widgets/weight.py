@@ -6,8 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ddlib.widgets import CurveWidget, Live, Panel, Parameter, Scalar
-from ddlib.widgets.base import SCRIPT, STYLE, module
+from ddlib.widgets import CurveWidget, Live, Panel, Parameter, Scalar, bundle, styles
 
 _HERE = Path(__file__).parent
 
@@ -24,8 +23,8 @@ class OneWeight(CurveWidget):
     the last one; whoever moves the weight by hand begins anew.
     """
 
-    _esm = module(*SCRIPT, _HERE / "weight.js")
-    _css = module(*STYLE, _HERE / "weight.css")
+    _esm = bundle(_HERE / "weight.js")
+    _css = styles(_HERE / "weight.css")
 
     def __init__(self, **options):
         weight = "weight"

@@ -1,6 +1,9 @@
 // What WeightReader (weights.py) adds to a HintonWidget: the chosen row as squares above its curve,
 // square over stem; and the start that leaves both, slowly, when it is subtracted.
 
+import { extras } from "ddlib/curves.js";
+import { make, put, short } from "ddlib/elements.js";
+
 const LEAVES = 900; // ms
 
 extras.push((view) => {

@@ -14,7 +14,7 @@ from ddlib.analysis import roughness
 from ddlib.figures import COLOURS, illustrate
 from ddlib.figures.weights import dots, hinton_on, relative_weights
 from ddlib.learning import Weights
-from ddlib.widgets.base import SCRIPT, STYLE, Panel, Scalar, module
+from ddlib.widgets.base import Panel, Scalar
 from ddlib.widgets.hinton import (
     CENTRE,
     JOINTS,
@@ -24,6 +24,7 @@ from ddlib.widgets.hinton import (
     weight_functions,
 )
 from ddlib.widgets.parts.parameters import Choice
+from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.still import START, encoded
 
 _HERE = Path(__file__).parent
@@ -47,8 +48,8 @@ class WeightReader(_HintonWidget):
         Passed on to `CurveWidget`.
     """
 
-    _esm = module(*SCRIPT, "hinton.js", _HERE / "weights.js")
-    _css = module(*STYLE, "hinton.css", _HERE / "weights.css")
+    _esm = bundle("hinton.js", _HERE / "weights.js")
+    _css = styles("hinton.css", _HERE / "weights.css")
 
     def __init__(
         self,

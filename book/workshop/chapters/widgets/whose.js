@@ -1,5 +1,8 @@
-// Shows WhoseFilters (whose.py): in each round two galleries of filters, of which the reader says
-// which one learnt this arm's torques. Follows elements.js and frame.js.
+// Shows WhoseFilters (whose.py): in each round two galleries of filters, of which the reader says which
+// one learnt this arm's torques.
+
+import { buttonOf, dress, make, put, safely, short, write } from "ddlib/elements.js";
+import { frameOf } from "ddlib/frame.js";
 
 const SIDES = ["A", "B"];
 const COLUMNS = 5;

@@ -13,7 +13,8 @@ import traitlets as t
 from ddlib._check import finite_array
 from ddlib.analysis import classify
 from ddlib.figures import INK, illustrate
-from ddlib.widgets.base import STYLE, PageWidget, module
+from ddlib.widgets.base import PageWidget
+from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.still import START, encoded
 
 _HERE = Path(__file__).parent
@@ -43,8 +44,8 @@ class WhoseFilters(PageWidget):
         Decides which side is the arm's.
     """
 
-    _esm = module("elements.js", "frame.js", _HERE / "whose.js")
-    _css = module(*STYLE, _HERE / "whose.css")
+    _esm = bundle(_HERE / "whose.js")
+    _css = styles(_HERE / "whose.css")
 
     round = t.Int(0, help="which round is shown, from 0").tag(sync=True)
     guesses = t.Unicode(help="A or B for each round, - where there is no guess").tag(sync=True)

@@ -1,6 +1,10 @@
-// What SlidingWindow (window.py) computes. Follows sliding.js.
+// What SlidingWindow (window.py) computes.
 
-live = (view) => {
+import { computes } from "ddlib/curves.js";
+import { NAMES, activity } from "ddlib/engine.js";
+import { modelsOf, recordedOf, scaledOf, toldTorques, windowAt } from "ddlib/sliding.js";
+
+computes((view) => {
   const { model, spec } = view;
   const [strip, , chart] = spec.panels;
   const times = chart.x;
@@ -29,4 +33,4 @@ live = (view) => {
   const inside = (t) => [Math.min(times.at(-1), Math.max(times[0], t))];
   Object.assign(curves, { from: inside(times[sample] - half), to: inside(times[sample] + half) });
   return Object.assign(curves, { first: [-1000 * half], last: [1000 * half] });
-};
+});

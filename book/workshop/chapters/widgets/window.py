@@ -12,10 +12,11 @@ from ddlib._check import finite_array, like
 from ddlib.learning import TorqueModel, sliding_windows
 from ddlib.learning.windows import check_width
 from ddlib.simulation import Recording
-from ddlib.widgets.base import SCRIPT, CurveWidget, Panel, Scalar, module
-from ddlib.widgets.engine._plain import ENGINE, SLIDING, lean, networks
+from ddlib.widgets.base import CurveWidget, Panel, Scalar
+from ddlib.widgets.engine._plain import networks
 from ddlib.widgets.hinton import JOINTS, _check_models, common_step, width_choice
 from ddlib.widgets.parts.parameters import Choice
+from ddlib.widgets.scripts import bundle
 from ddlib.widgets.table import Live
 
 _HERE = Path(__file__).parent
@@ -39,7 +40,7 @@ class SlidingWindow(CurveWidget):
         Passed on to `CurveWidget`.
     """
 
-    _esm = module(*SCRIPT) + lean(module(*ENGINE, SLIDING, _HERE / "window.js"))
+    _esm = bundle(_HERE / "window.js")
 
     layouts = t.List(help="the networks' layouts and scalings", read_only=True).tag(sync=True)
     weights = t.Bytes(help="the networks' weights as float32", read_only=True).tag(sync=True)
@@ -175,7 +176,7 @@ class HiddenTorque(CurveWidget):
         Passed on to `CurveWidget`.
     """
 
-    _esm = module(*SCRIPT) + lean(module(*ENGINE, SLIDING, _HERE / "hidden.js"))
+    _esm = bundle(_HERE / "hidden.js")
 
     recorded = t.Bytes(help="positions with half a window on either side, torques", read_only=True)
     recorded.tag(sync=True)

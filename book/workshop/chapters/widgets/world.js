@@ -1,9 +1,15 @@
-// The thrown arm without its picture: who moves the arm, what is logged, what the network makes
-// of it. Follows engine.js. `spec` is ThrownArm's (engine/throw.py).
+// The thrown arm without its picture: who moves the arm, what is logged, what the network makes of it.
+// `spec` is ThrownArm's (engine/throw.py).
+
+import {
+  JOINTS, activity, drive, networkOf, pickAndPlace, pid, placesOf, respond, scaledWindow,
+  torqueOfForce, torqueOfOutput,
+} from "ddlib/engine.js";
+import { armMass } from "ddlib/physics.js";
 
 const KEPT = 331; // samples of the log: what the charts show, and a window
 
-function worldOf(spec, values) {
+export function worldOf(spec, values) {
   const { plant, lengths, step, every, motion } = { ...spec, lengths: spec.plant.lengths };
   const model = { ...spec.network, net: networkOf(spec.network.layout, values) };
   const { width } = model.net;
@@ -151,7 +157,7 @@ function parabolaOf(half) {
 }
 
 // Weights as a constant, a line, a parabola and what is left, and the three's shares of the energy.
-function folded(weights) {
+export function folded(weights) {
   const half = weights.length >> 1;
   const onto = (shape) => {
     const factor = along(shape, weights) / along(shape, shape);
