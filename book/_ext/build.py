@@ -85,7 +85,9 @@ def execute(cache, paths: list[Path], say=print) -> list[Path]:
             _, left = wait(left, PAUSE)
             count = len(cache.list_cache_records()) - before
             say(f"    {count} of {wanted} notebooks after {time.monotonic() - started:.0f} s")
-    return list(map(Path, task.result().errored))
+    errored = task.result().errored  # also where two notebooks of the same code met in the cache
+    left = cache.list_unexecuted(filter_uris=errored) if errored else []
+    return [Path(record.uri) for record in left]
 
 
 def write_pages(root: Path, strict: bool, ended: list[str]) -> int:

@@ -43,7 +43,7 @@ def sections(out: Path, found: list[str]) -> dict[str, dict[str, list[str]]]:
     moved: dict[str, dict[str, list[str]]] = {}
     for name, anchors in yaml.safe_load(OLD.read_text(encoding="utf-8")).items():
         own = f"book/{name}"
-        for anchor in set(anchors) - set(ids.get(own, ())):
+        for anchor in sorted(set(anchors) - set(ids.get(own, ()))):
             behind = [f"book/evidence/{name}", *found]  # the page's own evidence comes first
             now = next((page for page in behind if anchor in ids.get(page, ())), None)
             if now:
