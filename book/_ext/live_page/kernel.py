@@ -358,7 +358,7 @@ def _tell(error, tree, name: str, emit) -> None:
             inside = inside.tb_next
         lines = traceback.format_exception(type(error), error, inside)
         emit("error", "".join(lines))
-        if isinstance(error, MemoryError):
+        if isinstance(error, MemoryError) or "index-sized" in str(error):  # 2 GB and more
             emit("memory", "")
             return
         if blocked:  # what a cell above did not do may be missed in many ways

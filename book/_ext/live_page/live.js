@@ -278,6 +278,7 @@
         document.execCommand("insertText", false, "    "); // so that it can be undone
       }
     });
+    cell.el.classList.remove("is-asked-below"); // the page's own field is no longer all there is
     input.hidden = true;
     input.after(cell.area, tools);
     if (cell.handles?.length) tools.after(sliders(cell));
