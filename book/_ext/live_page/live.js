@@ -280,7 +280,7 @@
     });
     input.hidden = true;
     input.after(cell.area, tools);
-    if (cell.handles?.length) tools.before(sliders(cell));
+    if (cell.handles?.length) tools.after(sliders(cell));
     fit(cell);
   }
 

@@ -205,6 +205,8 @@ class _Cell(ast.NodeVisitor):
         method = isinstance(call.func, ast.Attribute)
         if method and _bases(call.func) <= self.imported:
             return  # a figure
+        if method and call.func.attr in IN_PLACE:
+            return  # what it is given stays as it is
         given = [*call.args, *(keyword.value for keyword in call.keywords)]
         for part in [call.func, *given] if method else given:
             for name in _bases(part):
