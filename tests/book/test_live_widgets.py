@@ -35,7 +35,8 @@ def site(tmp_path_factory):
     head = '<html lang="en"><meta charset="utf-8"><title>x</title>'
     page = f"<!doctype html>{head}<body>{main}</body></html>"
     (folder / "html" / f"{PAGE}.html").write_text(page, encoding="utf-8")
-    (folder / "html" / "index.html").touch()
+    for name in ("index.html", "favicon.ico"):
+        (folder / "html" / name).touch()
     kept = live.BUILD / "pyodide" / live.VERSION
     live.write(ROOT, folder / "html", MIRROR, kept, folder / "out")
     with pytest.MonkeyPatch.context() as patch, chromium.serve(folder / "out") as address:
