@@ -111,7 +111,7 @@
       {},
       "Your changes and the exercises that you solved stay on this device. Nothing is sent.",
     ),
-    button("Save as a file", "Save your work on all pages of the book as a file", () => takeOut()),
+    button("Save as a file", "Save as a file: your work on all pages of the book", () => takeOut()),
     button("Open a file", "Open a file with your work", () => picked.click()),
     button("Erase", "Erase your work on all pages of the book", () => erase()),
     picked,

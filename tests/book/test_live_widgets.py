@@ -1,0 +1,95 @@
+"""*Run this page*: a widget in the page and its object in Python are one, in a browser."""
+
+import html
+import os
+import sys
+
+import chromium
+import pytest
+from axe import violations
+from book_pages import ROOT
+from open_cells import lesson
+
+sys.path.insert(0, str(ROOT / "book" / "_ext"))
+import live
+
+MIRROR = os.environ.get("DDLIB_LIVE_MIRROR", "")
+POLICY = f"{chromium.POLICY}; script-src 'self' 'unsafe-inline' blob: 'wasm-unsafe-eval'"
+IDLE, PAGE = "html[data-live=idle]", "book/feedback"
+PICKER = "from ddlib.widgets import TrajectoryPicker\npicker = TrajectoryPicker()\npicker"
+PICKED = "print(*picker.extents_deg, abs(picker.recording.q).max())"
+TRAINER = "from ddlib.widgets import NetworkTrainer\ntrainer = NetworkTrainer()\ntrainer"
+TRAINED = "print(trainer.epoch, trainer.model.weights.width, trainer.error)"
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    """A page with cells alone, live, on a server of its own."""
+    if not MIRROR:
+        pytest.skip("set DDLIB_LIVE_MIRROR to a folder or an address with Pyodide's packages")
+    folder = tmp_path_factory.mktemp("site")
+    (folder / "html" / "book").mkdir(parents=True)
+    cell = '<div class="cell x"><div class="cell_input"><pre>{}</pre></div></div>'
+    code = (html.escape(c.source) for c in lesson(PAGE).cells if c.cell_type == "code")
+    main = f"<main><section><h1>x</h1>{''.join(map(cell.format, code))}</section></main>"
+    head = '<html lang="en"><meta charset="utf-8"><title>x</title>'
+    page = f"<!doctype html>{head}<body>{main}</body></html>"
+    (folder / "html" / f"{PAGE}.html").write_text(page, encoding="utf-8")
+    for name in ("index.html", "favicon.ico"):
+        (folder / "html" / name).touch()
+    kept = live.BUILD / "pyodide" / live.VERSION
+    live.write(ROOT, folder / "html", MIRROR, kept, folder / "out")
+    with pytest.MonkeyPatch.context() as patch, chromium.serve(folder / "out") as address:
+        patch.setattr(chromium, "POLICY", POLICY)
+        yield address
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+def test_what_is_picked_and_trained_in_the_page_python_has(browser, site):
+    tab, wrong = browser.new_page(viewport={"width": 1000, "height": 900}), []
+    tab.on("pageerror", lambda error: wrong.append(str(error)))
+    tab.on("console", lambda message: message.type == "error" and wrong.append(message.text))
+    tab.goto(f"{site}/{PAGE}.html")
+    tab.get_by_role("button", name="Run this page").click()
+    tab.get_by_role("button", name="Stop").click()
+    outputs = tab.locator(".live-output")
+
+    def run(number, source):
+        field = tab.get_by_role("textbox").nth(number - 1)
+        field.fill(source)
+        field.press("Control+Enter")
+        tab.locator(IDLE).wait_for(timeout=600_000)
+        assert not tab.locator(".live-error").all_inner_texts()
+        return outputs.nth(number - 1)
+
+    shown = run(1, PICKER).locator(".ddlib-widget")
+    before = run(2, PICKED).inner_text().split()
+    square = shown.locator("svg").first
+    square.scroll_into_view_if_needed()
+    box = square.bounding_box()
+    x, y = (box[a] + box[size] / 2 for a, size in (("x", "width"), ("y", "height")))
+    tab.mouse.move(x, y)
+    tab.mouse.down()
+    tab.mouse.move(x - 40, y + 30, steps=8)
+    tab.mouse.up()
+    told = [t.rstrip("°") for t in shown.locator(".slider output").all_inner_texts()[:2]]
+    after = run(2, PICKED).inner_text().split()
+    assert after[0] != before[0] and after[2] != before[2]
+    assert [f"{float(value):.1f}" for value in after[:2]] == told
+    run(2, "picker.extents_deg = 12, 34\n" + PICKED)  # and the other way
+    assert shown.locator(".slider output").all_inner_texts()[:2] == ["12.0°", "34.0°"]
+    assert not violations(tab)
+
+    page = run(3, TRAINER).locator(".ddlib-widget")
+    run(4, "trainer.epoch = 100")
+    page.get_by_text("100", exact=False).first.wait_for()
+    tab.wait_for_timeout(6_000)  # the page trains
+    told = run(5, TRAINED).inner_text().split()
+    assert told[:2] == ["100", "21"] and 0 < float(told[2]) < 2
+    if folder := os.environ.get("DDLIB_LIVE_PICTURES"):
+        for scheme in ("light", "dark"):
+            chromium.coloured(tab, scheme)
+            for k, one in enumerate((shown, page)):
+                one.screenshot(path=f"{folder}/widget-{k}-{scheme}.png")
+    assert not wrong
