@@ -135,9 +135,9 @@ pdf: book  ## the walk and the evidence as PDFs, in _build/pdf (needs Chromium)
 epub: book  ## the walk as an EPUB, in _build/epub (needs Chromium)
 	@$(BIN)/python book/_ext/epub.py
 
-release: $(READY)  ## wheel, site, PDFs, EPUB and notebooks in dist/, if tag, citation and changelog agree
+release: $(READY)  ## wheel, sites, PDFs, EPUB and notebooks in dist/, if tag, citation and changelog agree
 	@$(BIN)/python book/_ext/release.py --check
-	@$(MAKE) --no-print-directory pdf epub
+	@$(MAKE) --no-print-directory pdf epub live
 	@$(BIN)/python book/_ext/release.py
 
 COLAB = _build/colab

@@ -33,7 +33,7 @@ MADE = ROOT / "_build" / "assignments"
 OWN = f"## {HEADING}\n"
 ANSWER = re.compile(r"<details.*?</details>", re.DOTALL)
 EQUATION = re.compile(r"(?ms)^\$\$\n(.*?)\n\$\$[ \t]*(?:\(([\w-]+)\))?[ \t]*$")
-JUDGE = re.compile(r"from workshop\.chapters\.\w+ import check\b")
+JUDGE = re.compile(r"from ((?:workshop|beyond)\.chapters\.\w+) import check\b")
 ENGINE = "workshop.chapters.exercises"
 SAID = (
     "# {}: an assignment{}\n\n**Name:**\n\nThis is the code of the lesson {}. Run it from the top. "
@@ -86,7 +86,7 @@ def names(node: ast.AST, use: str) -> set[str]:
 
 
 def judge(module: str, wanted: set[str], root: Path = ROOT) -> tuple[list[str], list[str]]:
-    """What some definitions of a module of the workshop need: imports, and code as it stands."""
+    """What some definitions of a module of the book's need: imports, and code as it stands."""
     text = (root / "book" / (module.replace(".", "/") + ".py")).read_text(encoding="utf-8")
     body, known, imports, code = ast.parse(text).body, 0, [], []
     while known < len(wanted):
@@ -99,7 +99,7 @@ def judge(module: str, wanted: set[str], root: Path = ROOT) -> tuple[list[str], 
             node.names = [a for a in node.names if (a.asname or a.name.split(".")[0]) in wanted]
             if node.names and home == ENGINE:
                 node.module = "exercises"
-            elif node.names and home.startswith("workshop"):
+            elif node.names and home.startswith(("workshop", "beyond")):
                 theirs = judge(home, {a.name for a in node.names}, root)
                 imports, code = imports + theirs[0], code + theirs[1]
                 continue
@@ -112,7 +112,8 @@ def judge(module: str, wanted: set[str], root: Path = ROOT) -> tuple[list[str], 
 
 def judge_module(name: str, root: Path = ROOT) -> str:
     """The file judge.py of a lesson."""
-    imports, code = judge(f"workshop.chapters.{name.replace('-', '_')}", {"check"}, root)
+    module = JUDGE.search(lessons(root)[name].read_text("utf-8"))[1]
+    imports, code = judge(module, {"check"}, root)
     first = sorted({*imports}, key=lambda line: ("__future__" not in line, line))
     told = f'"""What is asked in the lesson {name}, and what is right."""'
     return "\n\n\n".join([f"{told}\n\n" + "\n".join(first), *code]) + "\n"

@@ -29,6 +29,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))  # for the workshop of the bo
 
 import yaml
 from dd_book import PAGE_INPUTS, cache_path, digest
+from dd_cite import edition
 from dd_failures import FAILURES, last_line, where
 from dd_public import repository, site
 from jupyter_book.sphinx import build_sphinx
@@ -205,8 +206,9 @@ def report(root: Path, found: list[str], strict: bool) -> None:
 def main(root: Path, strict: bool) -> int:
     html = root / "_build" / "html"
     stamp = html / ".built-from"
-    public = repository(root)  # buttons, cards and the site's map hang on it
-    sources = f"{digest(root, PAGE_INPUTS)} {public and site(public)} {public}".strip()
+    public = repository(root)  # buttons, cards, map of the site and footers hang on it
+    about = (digest(root, PAGE_INPUTS), public and site(public), public, edition(root))
+    sources = " ".join(filter(None, about))
     failed = False
     if stamp.is_file() and stamp.read_text() == sources:
         print("==> Nothing changed since the last build")

@@ -14,10 +14,11 @@ from sphinx import addnodes
 from sphinx.pycode import ModuleAnalyzer
 
 SHOWN = (
-    "workshop.report._measures",
-    "workshop.beyond._measures",
+    "workshop.report.measures",
     "workshop.chapters",
     "workshop.report.evidence.expressions",
+    "beyond.measures",
+    "beyond.chapters",
 )
 """Packages and modules whose source has pages."""
 

@@ -26,7 +26,7 @@ KEPT_CACHES = 3
 # What a notebook's outcome depends on beside its own cells, and what the pages depend on.
 # Questions for readers (quizzes.yml) are the pages' alone.
 READ = ("book/cards.yml", "book/claims.yml", "book/errata.yml", "book/questions.yml")
-CELL_INPUTS = ("ddlib", "book/workshop", "book/results", *READ, "requirements.txt")
+CELL_INPUTS = ("ddlib", "book/workshop", "book/beyond", "book/results", *READ, "requirements.txt")
 PAGE_INPUTS = (
     "book",
     "ddlib",

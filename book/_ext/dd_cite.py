@@ -1,13 +1,18 @@
-"""How to cite the book, from CITATION.cff, and what the footer of every page leads to.
+"""How to cite the book, from CITATION.cff, and what the footer of every page says.
 
-The directive ``{citation}`` is an entry for BibTeX, of the book and of the report.
+The directive ``{citation}`` is an entry for BibTeX, of the book and of the report. The footer
+leads to pages about the book; in a release it names the version, too, and links the newest.
 """
 
 from __future__ import annotations
 
+import html
+import subprocess
+from functools import cache
 from pathlib import Path
 
 import yaml
+from dd_public import repository, site
 from docutils import nodes
 from sphinx.util.docutils import SphinxDirective
 
@@ -58,14 +63,40 @@ class Citation(SphinxDirective):
         return [nodes.literal_block(text, text, language="bibtex")]
 
 
+@cache
+def edition(root: Path) -> str:
+    """Version and day of a release, as "1.2.0 of 2026-01-31"; nothing between two releases.
+
+    A folder is a release if git has a tag of CITATION's version on what is checked out.
+    """
+    asked = ["git", "-C", str(root), "tag", "--points-at", "HEAD"]
+    if not (root / FILE).is_file():  # a part of the book
+        return ""
+    try:
+        tags = subprocess.run(asked, capture_output=True, text=True, check=False).stdout.split()
+    except OSError:  # no git here
+        return ""
+    cited = yaml.safe_load((root / FILE).read_text(encoding="utf-8"))
+    released = f"v{cited['version']}" in tags
+    return f"{cited['version']} of {cited['date-released']}" if released else ""
+
+
+def version(root: Path, public: str) -> list[str]:
+    """What the pages of a release say of it; `public` is the repository's name, or nothing."""
+    if not (is_release := edition(root)):
+        return []
+    newest = f'. <a href="{html.escape(site(public))}">The newest version</a>' if public else ""
+    return [f"This is version {is_release}{newest}"]
+
+
 def lead(app, page, template, context, doctree):
-    """Links in the footer, to those of the pages that there are."""
+    """The footer: which version this is, and links to those of the pages that there are."""
     links = (
         f'<a href="{context["pathto"](name)}">{told}</a>'
         for name, told in FOOTER.items()
         if name in app.env.found_docs
     )
-    context["theme_extra_footer"] = " · ".join(links)
+    context["theme_extra_footer"] = " · ".join([*version(Path(app.srcdir), repository()), *links])
 
 
 def setup(app):

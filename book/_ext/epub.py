@@ -7,13 +7,15 @@ from __future__ import annotations
 
 import html
 import re
+import shutil
 import sys
 import zipfile
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 import pdf
-from pdf import ROOT, TITLE, chromium, contents, offered, taken
+from offers import offer
+from pdf import ROOT, TITLE, chromium, contents, taken
 from tqdm import tqdm
 
 STAMP = (1988, 8, 1, 0, 0, 0)  # the same bytes from the same pages
@@ -136,7 +138,8 @@ def main() -> None:
     with chromium.launch() as browser, tqdm(total=sum(len(p) for _, p in parts)) as progress:
         found = taken(browser, built, parts, progress, book=True)
     make(found, folder / "book.epub")
-    offered(built, folder / "book.epub", "make epub")
+    shutil.copyfile(folder / "book.epub", built / "book.epub")
+    offer(built)
     size = (folder / "book.epub").stat().st_size / 1e6
     print(f"==> {(folder / 'book.epub').relative_to(ROOT)}, {size:.1f} MB")
 

@@ -31,6 +31,7 @@ from pathlib import Path
 import nbformat
 from dd_lessons import chapters
 from dd_reader import FOLDED, has_script
+from offers import FIRST as FIRST_PAGE, offer
 
 ROOT = Path(__file__).parents[2]
 PAGE = Path(__file__).with_name("live_page")  # what the page itself runs
@@ -214,8 +215,8 @@ def runtime(root: Path, mirror: str, kept: Path, out: Path) -> dict[str, int]:
     ours = {path: content for path, content in ours.items() if not path.startswith(STILL)}
     depends = [name for name in FIRST if name != "ddlib"]
     packages["ddlib"] = wheel("ddlib", distribution("ddlib").version, ours, depends, pyodide)
-    workshop = sources(root / "book" / "workshop", root / "book")
-    (out / "workshop.zip").write_bytes(zipped(workshop))
+    rooms = [sources(root / "book" / name, root / "book") for name in ("workshop", "beyond")]
+    (out / "workshop.zip").write_bytes(zipped(rooms[0] | rooms[1]))
     (pyodide / LOCK).write_text(json.dumps({**lock, "packages": packages}), encoding="utf-8")
     for path in PAGE.iterdir():
         if path.is_file():
@@ -303,6 +304,8 @@ def write(root: Path, site: Path, mirror: str, kept: Path, out: Path) -> list[st
             for name in DATA.findall("\n".join(c.source for c in notebook.cells)):
                 (folder / "data").mkdir(exist_ok=True)
                 shutil.copyfile(root / "book" / "data" / name, folder / "data" / name)
+        if (part / FIRST_PAGE).is_file():
+            offer(part)
         shutil.rmtree(out, ignore_errors=True)
         part.rename(out)
     finally:

@@ -20,6 +20,7 @@ import yaml
 sys.path.append(str(Path(__file__).parents[2] / "tests" / "support"))  # how a browser is found
 import chromium
 from dd_public import repository, site
+from offers import offer
 from tqdm import tqdm
 
 ROOT = Path(__file__).parents[2]
@@ -190,18 +191,6 @@ def titled(entry, headings: list[str]) -> None:
         entry = entry.get("/Next")
 
 
-def offered(built: Path, made: Path, words: str) -> None:
-    """Put a volume beside the pages, and a link on the first one, where it says how to make it."""
-    shutil.copyfile(made, built / made.name)
-    first = built / f"{AHEAD[0]}.html"
-    text = first.read_text(encoding="utf-8")
-    told = "".join(f'<span class="pre">{word}</span> ' for word in words.split()).rstrip()
-    code = f'<code class="docutils literal notranslate">{told}</code>'
-    link = f' (<a href="../{made.name}" download>{made.name}</a>)'
-    if link not in text:
-        first.write_text(text.replace(code, code + link, 1), encoding="utf-8")
-
-
 def printed(browser, path: Path) -> bytes:
     page = browser.new_page()
     page.set_default_timeout(600_000)
@@ -247,7 +236,8 @@ def main(wanted: list[str]) -> None:
     with chromium.launch() as browser:
         for volume in wanted or VOLUMES:
             path = make(built, folder, volume, browser)
-            offered(built, path, "make pdf")
+            shutil.copyfile(path, built / path.name)
+            offer(built)
             print(f"==> {path.relative_to(ROOT)}, {path.stat().st_size / 1e6:.1f} MB")
 
 

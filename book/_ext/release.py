@@ -1,4 +1,7 @@
-"""Put a release together in `dist/`: wheel, site, PDF, EPUB, notebooks, their list and checksums.
+"""Put a release together in `dist/`: wheel, sites, PDFs, EPUB, notebooks, their list and checksums.
+
+There are two sites: pages to open from a folder, and the live ones, which run Python in the browser
+and want a server, as `python -m http.server`; neither needs a network.
 
 `python book/_ext/release.py` says what does not agree, and writes nothing then: the version of the
 package, of the citation and of the newest entry of the changelog, its date and the citation's, the
@@ -99,7 +102,7 @@ def crate(cited: dict, made: list[Path]) -> dict:
 
 
 def collect(root: Path, folder: Path) -> list[Path]:
-    """Make the wheel and the site's archive, copy the rest, sum them up; what is there then.
+    """Make the wheel and the sites' archives, copy the rest, sum them up; what is there then.
 
     Raises
     ------
@@ -108,7 +111,9 @@ def collect(root: Path, folder: Path) -> list[Path]:
     """
     built, version = root / "_build", git(root, "describe", "--tags", "--always")
     missing = [str(path) for path in MADE.values() if not (built / path).is_file()]
-    missing += ["html/index.html"] * (not (built / "html" / "index.html").is_file())
+    sites = {"site": "html", "live": "live"}
+    firsts = [f"{folder}/index.html" for folder in sites.values()]
+    missing += [first for first in firsts if not (built / first).is_file()]
     if missing:
         raise FileNotFoundError(f"not made yet, below _build: {', '.join(missing)}")
     new = folder.with_name(f".{folder.name}")  # whole or not at all
@@ -116,7 +121,8 @@ def collect(root: Path, folder: Path) -> list[Path]:
     new.mkdir(parents=True)
     wheel = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "-w", new.resolve(), "."]
     subprocess.run(wheel, check=True, cwd=root)  # brackets in a path would be extras to pip
-    shutil.make_archive(str(new / f"site-{version}"), "zip", built / "html")
+    for name, pages in sites.items():
+        shutil.make_archive(str(new / f"{name}-{version}"), "zip", built / pages)
     for name, path in MADE.items():
         stem, dot, ending = name.rpartition(".")
         shutil.copyfile(built / path, new / f"{stem}-{version}{dot}{ending}")

@@ -5,14 +5,14 @@ import pytest
 from hypothesis import given, strategies as st
 from scipy.integrate import cumulative_simpson, solve_ivp
 
-from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM, Arm
-from ddlib.trajectories import Trajectory
-from workshop.beyond.control.adaptive import (
+from beyond.control.adaptive import (
     _PARAMETERS,
     SlotineLi,
     _CraigHsuSastry,
     mixed_regressor,
 )
+from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM, Arm
+from ddlib.trajectories import Trajectory
 
 ARM = CMU_DD_ARM_II
 TRUTH = np.array([ARM.a, ARM.b, ARM.d])

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
+from beyond.control.adaptive import SlotineLi, Watched, mixed_regressor
+from beyond.studies.loop.runs import adaptive as runs
 from ddlib.dynamics import CMU_DD_ARM_II, end_point_error
 from ddlib.effects import IDEAL
 from ddlib.setups import KD, STATE_FEEDBACK
 from ddlib.simulation import record
 from ddlib.trajectories import APPENDIX_I, pick_and_place
-from workshop.beyond.control.adaptive import SlotineLi, Watched, mixed_regressor
-from workshop.beyond.studies.loop.runs import adaptive as runs
 
 HALF = 0.5 * runs.TRUTH
 

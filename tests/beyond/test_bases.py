@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from numpy.polynomial import chebyshev, polynomial
 
-from workshop.beyond.rivals.bases import Polynomial, _Fourier
-from workshop.beyond.rivals.protocol import Cases, _NotFitted
+from beyond.rivals.bases import Polynomial, _Fourier
+from beyond.rivals.protocol import Cases, _NotFitted
 
 RNG = np.random.default_rng(3)
 

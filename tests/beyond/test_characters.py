@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from workshop.beyond.rivals.protocol import Cases
-from workshop.beyond.studies import characters, rivals
-from workshop.beyond.studies.checks import published
+from beyond.rivals.protocol import Cases
+from beyond.studies import characters, rivals
+from beyond.studies.checks import published
 
 
 @pytest.fixture(scope="module")

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from workshop.beyond.rivals.cmac import CMAC, _Diverged
-from workshop.beyond.rivals.protocol import Cases
+from beyond.rivals.cmac import CMAC, _Diverged
+from beyond.rivals.protocol import Cases
 
 BOX = np.stack([np.full((2, 3), -1.0), np.full((2, 3), 1.0)])
 

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
+from beyond.studies.loop import fair_rivals as study
+from beyond.studies.loop.run_time_parts import rounded
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II, end_point_error, with_load
 from ddlib.effects import CoulombFriction, Effects, Saturation, ViscousFriction
 from ddlib.setups import JOINT_DAMPING_COULOMB, JOINT_DAMPING_VISCOUS
 from ddlib.simulation import REST, follow
 from ddlib.trajectories import Trajectory, time_grid
-from workshop.beyond.studies.loop import fair_rivals as study
-from workshop.beyond.studies.loop.run_time_parts import rounded
 
 SOFT = study.RIVALS["PD, the book's gains"]
 STIFF = study.RIVALS["PD, ten times as stiff"]

@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from ddlib.control import pd
-from ddlib.dynamics import CMU_DD_ARM_II as ARM
-from ddlib.simulation import record
-from workshop.beyond.control.adaptive import _PARAMETERS, SlotineLi, Watched
-from workshop.beyond.control.feedback_error import (
+from beyond.control.adaptive import _PARAMETERS, SlotineLi, Watched
+from beyond.control.feedback_error import (
     FeedbackErrorLearning,
     MotionMemory,
     RigidBodyTerms,
 )
+from ddlib.control import pd
+from ddlib.dynamics import CMU_DD_ARM_II as ARM
+from ddlib.simulation import record
 
 GAIN, SLOPE = 30.0, np.array([8.0, 6.0])
 RATE = np.array([2.0, 0.5, 0.2, 10.0, 4.0])

@@ -5,10 +5,10 @@ import pytest
 from scipy.linalg import cho_factor, cho_solve
 from scipy.spatial.distance import cdist
 
+from beyond.rivals.gaussian import GaussianProcess, _RandomFeatures, _SemiParametric
+from beyond.rivals.protocol import Cases
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
 from ddlib.identification import GRAVITY, RIGID
-from workshop.beyond.rivals.gaussian import GaussianProcess, _RandomFeatures, _SemiParametric
-from workshop.beyond.rivals.protocol import Cases
 
 STEP = 0.01
 

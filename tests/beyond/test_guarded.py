@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from beyond.control.adaptive import Watched
+from beyond.control.guarded import REASONS, _Guarded
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.simulation import record
-from workshop.beyond.control.adaptive import Watched
-from workshop.beyond.control.guarded import REASONS, _Guarded
 
 STABLE, WILD = (300.0, 90.0), (8e5, 2e5)
 DAMPING = (35.0, 10.0)

@@ -6,11 +6,11 @@ from sklearn.linear_model import Ridge
 from sklearn.model_selection import KFold
 from sklearn.preprocessing import StandardScaler
 
+from beyond.rivals.identified import _RIDGES, Identified, Linear, _written_out
+from beyond.rivals.protocol import Cases
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import CoulombFriction, Effects, ViscousFriction
 from ddlib.identification import FRICTION, GRAVITY, RIGID, true_parameters
-from workshop.beyond.rivals.identified import _RIDGES, Identified, Linear, _written_out
-from workshop.beyond.rivals.protocol import Cases
 
 EFFECTS = Effects(friction=(ViscousFriction((5.0, 1.0)), CoulombFriction((1.5, 0.4))))
 

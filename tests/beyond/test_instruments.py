@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from beyond.studies import two_link
+from beyond.studies.checks import instruments
 from ddlib.dynamics import Arm
 from workshop import BOOK
-from workshop.beyond.studies import two_link
-from workshop.beyond.studies.checks import instruments
 
 PARAMETERS = np.array([0.135, 0.033, 0.023, 3.4, 1.1, 0.003, 0.02, 0.02, 0.05, 0.05, 0, 0])
 

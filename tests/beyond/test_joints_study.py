@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from beyond.studies.loop.chain import chain, extents, moved
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.simulation import LOG_STEP
-from workshop.beyond.studies.loop.chain import chain, extents, moved
 
 
 @pytest.mark.parametrize("setup", (JOINT_DAMPING, STATE_FEEDBACK), ids=lambda setup: setup.name)

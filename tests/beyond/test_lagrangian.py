@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import torch
 
+from beyond.rivals.lagrangian import LagrangianNetwork
+from beyond.rivals.protocol import Cases, _NotFitted
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
-from workshop.beyond.rivals.lagrangian import LagrangianNetwork
-from workshop.beyond.rivals.protocol import Cases, _NotFitted
 
 STEP = 0.01
 UPRIGHT = Arm("upright", 1.37, 0.5, 0.52, (1.0, 1.0), (2.6, 1.5))

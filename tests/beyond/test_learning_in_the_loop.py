@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from beyond.studies.loop import _learning as learning, learners
 from ddlib.control import Feedforward
 from ddlib.dynamics import end_point_error
 from ddlib.setups import STATE_FEEDBACK
 from ddlib.simulation import follow
 from ddlib.trajectories import Trajectory
-from workshop.beyond.studies.loop import _learning as learning, learners
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from workshop.beyond._measures import rivals as measures
+from beyond.measures import rivals as measures
 from workshop.report import results
 
 pytestmark = pytest.mark.usefixtures("planted_members")

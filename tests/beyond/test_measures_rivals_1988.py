@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from workshop.beyond._measures import rivals_1988 as measures
-from workshop.beyond.studies.rivals_1988 import _practised_distance
+from beyond.measures import rivals_1988 as measures
+from beyond.studies.rivals_1988 import _practised_distance
 from workshop.report import results
 
 pytestmark = pytest.mark.usefixtures("planted_members")

@@ -4,11 +4,11 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.signal import lsim
 
+from beyond.control.adaptive import SlotineLi, Watched, _CraigHsuSastry, _ModelReference
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS
 from ddlib.simulation import record
 from ddlib.trajectories import Trajectory
-from workshop.beyond.control.adaptive import SlotineLi, Watched, _CraigHsuSastry, _ModelReference
 
 ARM = CMU_DD_ARM_II
 TRUTH = np.array([ARM.a, ARM.b, ARM.d])

@@ -3,7 +3,7 @@
 import numpy as np
 from hypothesis import given, strategies as st
 
-from workshop.beyond.studies.loop.motions import _nearest_distances, _shared_cells
+from beyond.studies.loop.motions import _nearest_distances, _shared_cells
 
 GRID = np.stack(np.meshgrid([-0.75, -0.25, 0.25, 0.75], [-0.5, 0.5]), -1).reshape(-1, 2)
 

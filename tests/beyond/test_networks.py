@@ -5,9 +5,9 @@ import pytest
 import torch
 from scipy.special import expit
 
+from beyond.rivals.networks import BySolver, _adam, _ByAdam, _ByDescent
+from beyond.rivals.protocol import Cases
 from ddlib.learning import TrainingDiverged, TrainingSet, WindowNetwork, train
-from workshop.beyond.rivals.networks import BySolver, _adam, _ByAdam, _ByDescent
-from workshop.beyond.rivals.protocol import Cases
 
 
 def windows(n=150, width=5, seed=0):

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from beyond.control.online import LastLayer, OnlineFeedforward, _OnlineDescent
 from ddlib.control import pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.identification import RecursiveLeastSquares
 from ddlib.learning import Scaler, TorqueModel, Weights
 from ddlib.simulation import record
-from workshop.beyond.control.online import LastLayer, OnlineFeedforward, _OnlineDescent
 
 WIDTH = 5
 INPUTS = Scaler(np.array([-0.8, -0.9]), np.array([0.1, 0.2]))

@@ -5,7 +5,7 @@ import hashlib
 import numpy as np
 import pytest
 
-from workshop.beyond import others
+from beyond import others
 
 PAGE = (others._FOLDER / "README.md").read_text(encoding="utf-8")
 

@@ -5,9 +5,9 @@ import warnings
 import numpy as np
 import pytest
 
+from beyond.rivals.protocol import Cases, Estimating, Rival, _NotFitted, trial
 from ddlib.dynamics import CMU_DD_ARM_II, Operations
 from ddlib.trajectories import OutsideFamilyWarning, pick_and_place
-from workshop.beyond.rivals.protocol import Cases, Estimating, Rival, _NotFitted, trial
 
 STEP = 0.01
 TIMES = np.arange(-20, 321) * STEP

@@ -3,12 +3,10 @@
 import numpy as np
 from scipy.optimize import approx_fprime
 
-from ddlib.identification import joint_terms
-from ddlib.learning import Weights
-from workshop.beyond.others import staubli
-from workshop.beyond.studies import tx40
-from workshop.beyond.studies.checks import wired
-from workshop.beyond.studies.tx40 import (
+from beyond.others import staubli
+from beyond.studies import tx40
+from beyond.studies.checks import wired
+from beyond.studies.tx40 import (
     _BLOCKS,
     Ridge,
     Windowed,
@@ -16,6 +14,8 @@ from workshop.beyond.studies.tx40 import (
     known_structure,
     least_squares,
 )
+from ddlib.identification import joint_terms
+from ddlib.learning import Weights
 
 RNG = np.random.default_rng(0)
 

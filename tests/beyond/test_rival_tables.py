@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.interpolate import RegularGridInterpolator
 
+from beyond.rivals.protocol import Cases
+from beyond.rivals.tables import CellTable, GridTable, _full_table, _Nearest
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.trajectories import OutsideFamilyWarning
-from workshop.beyond.rivals.protocol import Cases
-from workshop.beyond.rivals.tables import CellTable, GridTable, _full_table, _Nearest
 
 BOX = np.stack([np.full((2, 3), -2.0), np.full((2, 3), 3.0)])
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from workshop.beyond.studies import rivals_1988 as study
+from beyond.studies import rivals_1988 as study
 from workshop.report import results
 
 POSITIONS = study._KINDS[1]

@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from beyond.rivals.identified import Linear
+from beyond.rivals.tables import _Nearest
+from beyond.studies import lineup, rivals
 from ddlib.learning import Weights
 from ddlib.setups import STATE_FEEDBACK, inside_hull
-from workshop.beyond.rivals.identified import Linear
-from workshop.beyond.rivals.tables import _Nearest
-from workshop.beyond.studies import lineup, rivals
 from workshop.report import results
 
 

@@ -6,13 +6,13 @@ import control
 import numpy as np
 import pytest
 
+from beyond.studies.loop import run_time_parts as parts
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II as ARM, Arm
 from ddlib.effects import Effects, ViscousFriction
 from ddlib.setups import JOINT_DAMPING, Setup
 from ddlib.simulation import CONTROL_STEP
 from ddlib.trajectories import Trajectory, pick_and_place
-from workshop.beyond.studies.loop import run_time_parts as parts
 
 WHEELS = Arm("two wheels", 2.0, 0.0, 1.0, (0.4, 0.3))
 """An arm whose mass matrix is constant and that has no centrifugal torques: a linear one."""

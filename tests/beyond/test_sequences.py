@@ -6,8 +6,8 @@ import torch
 from scipy.special import expit
 from torch.utils.flop_counter import FlopCounterMode
 
-from workshop.beyond.rivals.networks import _Convolution, _Recurrent
-from workshop.beyond.rivals.protocol import Cases
+from beyond.rivals.networks import _Convolution, _Recurrent
+from beyond.rivals.protocol import Cases
 
 
 def windows(n=300, width=11, seed=0):

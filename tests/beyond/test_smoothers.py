@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from beyond.studies.checks import smoothers
 from ddlib.effects import IDEAL
 from ddlib.identification import RIGID
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, split
-from workshop.beyond.studies.checks import smoothers
 from workshop.report import results
 
 
@@ -43,6 +43,22 @@ def test_a_late_sensor_logs_what_was_applied_two_samples_before():
     recording = setup.record(effects=replace(setup.effects, torque_sensor=tuple(quiet)))
     late = smoothers._LATE
     np.testing.assert_allclose(recording.tau[:, late:], recording.tau_true[:, :-late])
+
+
+def test_a_smoother_with_a_delay_gives_the_torque_that_was_applied(ideal):
+    """Torques logged two samples late: the delay that is told decides what comes out."""
+
+    def logged_late(recording):
+        return replace(recording, tau=np.roll(recording.tau, smoothers._LATE, axis=-2))
+
+    training, six = map(logged_late, ideal)
+    (ways,) = smoothers._MORE["late sensor"].values()
+    kept = {delay: ways[13.0, delay](RIGID, training) for delay in (0, smoothers._LATE)}
+    for logged in (True, False):
+        right, wrong = (smoothers._wrong(kept[d], six, logged=logged) for d in (smoothers._LATE, 0))
+        assert right < 1e-6 and wrong > 0.01
+    arm = STATE_FEEDBACK.arm
+    np.testing.assert_allclose(kept[smoothers._LATE].values, [arm.a, arm.b, arm.d], rtol=1e-4)
 
 
 def test_learnt_filters_are_those_of_the_study_that_tuned_them():

@@ -5,11 +5,11 @@ import itertools
 import numpy as np
 import pytest
 
+from beyond.chapters.stirring import needed
+from beyond.studies.loop import motions, stirring
 from ddlib.dynamics import CMU_DD_ARM_II as ARM, Unreachable
 from ddlib.setups import JOINT_DAMPING
 from ddlib.trajectories import MOTION_SECONDS
-from workshop.beyond.studies.loop import motions, stirring
-from workshop.chapters.stirring import needed
 
 T = motions.times()
 INSIDE = (T >= 0) & (T < MOTION_SECONDS)

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from beyond.chapters import real_two_link_arm as chapter
+from beyond.studies import two_link
 from ddlib.dynamics import Arm
-from workshop.beyond.studies import two_link
-from workshop.chapters import real_two_link_arm as chapter
 from workshop.report import results
 
 

@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from ddlib.control import late_poles, pd, plant
-from ddlib.dynamics import CMU_DD_ARM_II as ARM
-from ddlib.simulation import record
-from ddlib.trajectories import Trajectory
-from workshop.beyond.control.windowed import (
+from beyond.control.windowed import (
     PlannedTorque,
     WindowFeedforward,
     _MeasuredWindows,
     _poles_inside,
 )
+from ddlib.control import late_poles, pd, plant
+from ddlib.dynamics import CMU_DD_ARM_II as ARM
+from ddlib.simulation import record
+from ddlib.trajectories import Trajectory
 
 T = np.arange(0, 400) * 0.002
 Q = np.stack([np.sin(3 * T), np.cos(2 * T)], -1)

@@ -213,7 +213,7 @@ def test_the_texts_of_the_search_are_light(built):
 
 def test_text_on_canvases_can_be_read():
     """They are drawn in pixels of the page, so their sizes are those of the scripts."""
-    folders = "ddlib/widgets/static", "book/workshop/chapters/widgets"
+    folders = "ddlib/widgets/static", "book/*/chapters/widgets"
     scripts = [path for folder in folders for path in ROOT.glob(f"{folder}/*.js")]
     text = "".join(path.read_text("utf-8") for path in scripts)
     sizes = re.findall(r'\.font = "(?:bold |italic )?([\d.]+)px', text)

@@ -44,7 +44,7 @@ def test_what_the_walk_needs_is_said_alike():
 
 
 def test_every_widget_has_its_place_in_the_lessons():
-    homes = ROOT / "ddlib" / "widgets", ROOT / "book" / "workshop"
+    homes = ROOT / "ddlib" / "widgets", ROOT / "book" / "workshop", ROOT / "book" / "beyond"
     code = "\n".join(p.read_text(encoding="utf-8") for home in homes for p in home.rglob("*.py"))
     classes = set(re.findall(r"^class (\w+)\([\w.]*Widget\)", code, re.MULTILINE))
     made = re.compile(rf"\b({'|'.join(name for name in classes if name[-6:] != 'Widget')})\(")

@@ -5,13 +5,12 @@ from __future__ import annotations
 import ast
 from functools import cache
 from importlib import import_module
-from pathlib import Path
 
 import nbformat
 import prose
 import pytest
 import yaml
-from book_pages import API, EVIDENCE, EVIDENCE_OF, PAGES, ROOT, WALK, source
+from book_pages import API, EVIDENCE, EVIDENCE_OF, PAGES, ROOT, WALK, module_of, source
 
 SUPPORT = ROOT / "tests" / "support"
 ALLOWED = yaml.safe_load((SUPPORT / "allowed_numbers.yml").read_text(encoding="utf-8"))
@@ -73,12 +72,7 @@ def test_typed_results_are_told_from_names_and_settings():
         assert prose.typed_numbers(prose.sentence(planted)) == numbers, planted
 
 
-def module_of(page: str) -> Path:
-    name = page.rpartition("/")[2].replace("-", "_")
-    return ROOT / "book" / "workshop" / "chapters" / f"{name}.py"
-
-
-ALONE = [page for page in EVIDENCE if module_of(page) not in map(module_of, WALK)]
+ALONE = [page for page in EVIDENCE if module_of(page) not in [*filter(None, map(module_of, WALK))]]
 """Evidence pages with a module of their own, or with none."""
 
 
@@ -91,7 +85,7 @@ def checks(page: str) -> list[str]:
     code = [cell.source for cell in cells if cell.cell_type == "code"]
     if page in (*WALK, "book/index", *ALONE):
         path = module_of(page)
-        code += [path.read_text(encoding="utf-8")] if path.is_file() else []
+        code += [path.read_text(encoding="utf-8")] if path else []
     trees = [ast.parse(text) for text in code]
     calls = [
         node.args
@@ -132,7 +126,7 @@ def test_bound_sentences_stand_in_their_page_and_their_checks_too():
 def test_what_a_page_states_is_so(page):
     """By the `_said` of the page's module, if the page binds words at all."""
     path = module_of(page)
-    if page.removeprefix("book/") in BOUND and path.is_file():
-        module = import_module(f"workshop.chapters.{path.stem}")
+    if page.removeprefix("book/") in BOUND and path:
+        module = import_module(".".join(path.relative_to(ROOT / "book").with_suffix("").parts))
         assert page not in WALK or hasattr(module, "_said"), path
         getattr(module, "_said", lambda: None)()

@@ -13,6 +13,7 @@ from book_pages import ROOT
 from packaging.requirements import Requirement
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
+import dd_cite
 import dd_public
 import dd_reader
 import missing
@@ -71,7 +72,7 @@ def test_only_what_is_absent_is_installed():
 def test_the_first_cell_fetches_the_book(tmp_path):
     """From a repository in place of the address; then a lesson's judge is found, and data."""
     home = tmp_path / "repository"
-    for part in ("ddlib", "book/workshop", "book/_ext", "book/results", "book/data"):
+    for part in ("ddlib", "book/workshop", "book/beyond", "book/_ext", "book/results", "book/data"):
         shutil.copytree(ROOT / part, home / part, ignore=shutil.ignore_patterns("__pycache__"))
     for name in ("pyproject.toml", "book/claims.yml", "book/cards.yml", "book/errata.yml"):
         shutil.copyfile(ROOT / name, home / name)
@@ -140,6 +141,21 @@ def test_a_release_needs_tag_citation_and_changelog_to_agree(tagged):
     assert "no tag v1.2.0" in " ".join(release.disagreements(tagged))
 
 
+def test_pages_of_a_release_name_it_and_link_the_newest(tagged, monkeypatch):
+    monkeypatch.delenv("DDLIB_SITE", raising=False)
+    edition = dd_cite.edition.__wrapped__
+    assert edition(tagged) == "1.2.0 of 2026-01-31"
+    monkeypatch.setattr(dd_cite, "edition", edition)
+    (said,) = dd_cite.version(tagged, "someone/the-arm")
+    assert said.startswith("This is version 1.2.0 of 2026-01-31. <a href=")
+    assert "https://someone.github.io/the-arm/" in said
+    assert dd_cite.version(tagged, "") == ["This is version 1.2.0 of 2026-01-31"]
+    subprocess.run(["git", "-C", tagged, "tag", "-d", "v1.2.0"], check=True, capture_output=True)
+    assert edition(tagged) == "" and dd_cite.version(tagged, "someone/the-arm") == []
+    (tagged / "CITATION.cff").unlink()
+    assert edition(tagged) == ""
+
+
 def test_this_citation_and_changelog_agree():
     told = release.disagreements(ROOT)
     assert not [one for one in told if "tag" not in one and "committed" not in one]
@@ -147,7 +163,7 @@ def test_this_citation_and_changelog_agree():
 
 
 def test_an_incomplete_release_leaves_nothing(tagged):
-    with pytest.raises(FileNotFoundError, match=r"walk\.pdf"):
+    with pytest.raises(FileNotFoundError, match=r"walk\.pdf.* live/index\.html"):
         release.collect(tagged, tagged / "dist")
     assert not list(tagged.glob("*dist"))
 

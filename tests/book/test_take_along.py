@@ -10,6 +10,7 @@ from pypdf import PdfReader, PdfWriter
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import epub
+import offers
 import pdf
 
 
@@ -49,17 +50,35 @@ def test_an_outline_has_no_title_twice():
     assert titles == ["1. Dynamics", "1.1. Change this", "1.2. Go on", "Nobody's"]
 
 
-def test_a_volume_is_offered_on_the_first_page_once(tmp_path):
-    (tmp_path / "book").mkdir()
-    first, made = tmp_path / "book" / "index.html", tmp_path / "new" / "walk.pdf"
-    told = '<span class="pre">make</span> <span class="pre">pdf</span>'
-    first.write_text(f'<p><code class="docutils literal notranslate">{told}</code> makes</p>')
-    made.parent.mkdir()
-    made.write_bytes(b"pdf")
-    for _ in range(2):
-        pdf.offered(tmp_path, made, "make pdf")
-    assert first.read_text().count('<a href="../walk.pdf" download>') == 1
-    assert (tmp_path / "walk.pdf").read_bytes() == b"pdf"
+def test_a_site_offers_what_lies_in_it(tmp_path):
+    first = tmp_path / offers.FIRST
+    first.parent.mkdir()
+    first.write_text(f"<p>a</p>{offers.PLACE}</div><div>b</div>")
+
+    def offered() -> str:
+        for _ in range(2):  # twice is as once
+            offers.offer(tmp_path)
+        before, _, after = first.read_text().partition(offers.PLACE)
+        inside, _, after = after.partition("</div>")
+        assert (before, after) == ("<p>a</p>", "<div>b</div>")
+        return inside
+
+    (tmp_path / "notebooks.zip").touch()
+    assert offered() == ""  # the page says elsewhere where these are
+    (tmp_path / "walk.pdf").write_bytes(bytes(2_600_000))
+    assert '<a href="../walk.pdf" download>the walk as a PDF</a> (3 MB)' in offered()
+    assert "notebooks.zip" in offered() and "book.epub" not in offered()
+    (tmp_path / offers.LIVE).parent.mkdir(parents=True)
+    (tmp_path / offers.LIVE).touch()
+    assert "Run this page" in offered() and "walk.pdf" in offered()
+    first.write_text("no place")
+    with pytest.raises(ValueError, match="no place for offers"):
+        offers.offer(tmp_path)
+
+
+@pytest.mark.built
+def test_the_first_page_has_a_place_for_offers(built):
+    assert (built / offers.FIRST).read_text(encoding="utf-8").count(offers.PLACE) == 1
 
 
 @pytest.mark.browser

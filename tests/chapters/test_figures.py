@@ -9,10 +9,10 @@ from figure_examples import EXAMPLES, SHOWN, T, X, fitted, made
 from matplotlib.collections import QuadMesh
 from pictures import black_or_white, check_sound, ids, shapes, words
 
+from beyond.figures import maps
 from ddlib import figures
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.figures import COLOURS, INK
-from workshop.beyond import figures as beyond
 from workshop.chapters import (
     convolution_filters as filters,
     dynamics,
@@ -127,7 +127,7 @@ REFUSALS = [
     (figures.decomposed, (np.ones((2, 11)), 0.01), "functions must have shape"),
     (figures.decomposed, ({}, 0.01), "functions must hold one"),
     (figures.decomposed, (np.ones(11), 0.0), "step must"),
-    (beyond.maps, (X[:2], {"a": -np.ones((2, 2))}, (), "A."), "errors of 'a' must be positive"),
+    (maps, (X[:2], {"a": -np.ones((2, 2))}, (), "A."), "errors of 'a' must be positive"),
     (dynamics.arm_sketch, (ARM, [0.1, BAD]), "q must be finite"),
     (dynamics.estimates, ({"a": fitted()}, [1.0], ("x", "y"), 5.0), "truth must"),
     (recording.reached, ({"a": np.full((1, 10, 6), BAD)}, 1.0), r"states\['a'\] must"),

@@ -1,6 +1,6 @@
 """Data flows one way: nothing imports against the order of the rooms, and torch stays in its place.
 
-Rooms are found by folder: those of ddlib, and those of the book's workshop.
+Rooms are found by folder: those of ddlib, those of the book's workshop, and Part IV's.
 """
 
 import ast
@@ -25,20 +25,23 @@ DDLIB = (
     ),
     "widgets",
 )
-WORKSHOP = ("report", "beyond", "chapters")
+WORKSHOP = ("report", "chapters")
+BEYOND = ("rivals", "control", "others", "figures", "studies", "measures", "chapters")
 ORDER = (
     *("ddlib", *(f"ddlib.{room}" for room in DDLIB)),
     *("workshop", *(f"workshop.{room}" for room in WORKSHOP)),
+    *("beyond", *(f"beyond.{room}" for room in BEYOND)),
 )
 """Rooms: each may import from those before it. A new one comes here first."""
 
-TORCH = ("ddlib.learning", "workshop")
+TORCH = ("ddlib.learning", "workshop", "beyond")
 """Where torch may be imported."""
 
 
 def modules() -> dict[str, Path]:
     """The file of every module of ours, by its dotted name."""
-    homes = {"ddlib": ROOT / "ddlib", "workshop": ROOT / "book" / "workshop"}
+    book = {top: ROOT / "book" / top for top in ("workshop", "beyond")}
+    homes = {"ddlib": ROOT / "ddlib", **book}
     files = {}
     for top, home in homes.items():
         for path in sorted(home.rglob("*.py")):
@@ -80,7 +83,7 @@ def room_of(name: str) -> str:
 def may_import(module: str, name: str) -> bool:
     """Whether a module may import a name; the packages themselves hand on what they like."""
     room, other = room_of(module), room_of(name)
-    free = module in ("ddlib", "workshop") or other not in ORDER
+    free = module in ("ddlib", "workshop", "beyond") or other not in ORDER
     return free or ORDER.index(other) <= ORDER.index(room)
 
 

@@ -12,7 +12,7 @@ from packaging.utils import canonicalize_name
 from test_imports import imported
 
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-FOLDERS = ("ddlib", "book/workshop", "tests", "benchmarks", "book/_ext")
+FOLDERS = ("ddlib", "book/workshop", "book/beyond", "tests", "benchmarks", "book/_ext")
 TEXTS = {
     folder: {path: path.read_text("utf-8") for path in sorted((ROOT / folder).rglob("*.py"))}
     for folder in FOLDERS
@@ -49,7 +49,7 @@ def distributions(sources) -> set[str]:
     """Distributions from which sources import, in normal form; unknown modules as they are."""
     known = installed() | UNSEEN
     tops = {name.partition(".")[0] for source in sources for name in imported(source)}
-    outside = tops - HERE - set(sys.stdlib_module_names) - {"ddlib", "workshop", ""}
+    outside = tops - HERE - set(sys.stdlib_module_names) - {"ddlib", "workshop", "beyond", ""}
     return {canonicalize_name(known.get(name, [name])[0]) for name in outside}
 
 
@@ -58,6 +58,7 @@ def test_the_package_declares_what_it_imports():
     assert {"numpy", "torch", "traitlets"} <= used <= OWN.keys() | set().union(*EXTRAS.values())
     # anywidget's own need, for whose look and buttons the pages rely on its version 8
     used |= {"ipywidgets"} | distributions(TEXTS["book/workshop"].values())
+    used |= distributions(TEXTS["book/beyond"].values())
     assert OWN.keys() <= used, "a dependency is declared and not imported"
 
 

@@ -6,6 +6,8 @@ from types import ModuleType
 
 from book_pages import ROOT, code_cells
 
+OURS = ("ddlib", "workshop", "beyond")
+
 
 def shown(source: str) -> list[str]:
     """Python code in the strings of a source, with a number where a value of the page goes."""
@@ -18,7 +20,7 @@ def shown(source: str) -> list[str]:
 def missing(code: str) -> list[str]:
     bound, wrong = {}, []
     for node in ast.walk(ast.parse(code)):  # imports come before all that stands inside lines
-        if isinstance(node, ast.ImportFrom) and node.module.split(".")[0] in ("ddlib", "workshop"):
+        if isinstance(node, ast.ImportFrom) and node.module.split(".")[0] in OURS:
             exec(ast.unparse(node), bound)
         elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
             module = bound.get(node.value.id)
@@ -28,7 +30,7 @@ def missing(code: str) -> list[str]:
 
 
 def test_names_in_shown_code_exist():
-    homes = ROOT / "ddlib" / "widgets", ROOT / "book" / "workshop"
+    homes = ROOT / "ddlib" / "widgets", ROOT / "book" / "workshop", ROOT / "book" / "beyond"
     sources = [path.read_text("utf-8") for home in homes for path in home.rglob("*.py")]
     sources += [
         code for path in (ROOT / "book").glob("**/[!.]*.ipynb") for code in code_cells(path)

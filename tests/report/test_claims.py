@@ -99,7 +99,7 @@ def test_a_failing_measure_names_its_claim():
 
 @pytest.mark.parametrize("result", [Measured(float("nan"), "text"), Measured(1.0, " "), 1.0])
 def test_measures_that_cannot_be_judged(monkeypatch, result):
-    from workshop.report._measures import filters
+    from workshop.report.measures import filters
 
     monkeypatch.setattr(filters, "untrained", lambda wrong: result)
     with pytest.raises(_MeasureError, match=r"claim 'a' could not be measured.* must return"):
@@ -226,7 +226,7 @@ def test_printed_numbers_keep_their_digits(tmp_path):
 
 
 def test_measured_once_by_all_who_share_a_folder(monkeypatch, tmp_path):
-    from workshop.report._measures import windows
+    from workshop.report.measures import windows
 
     claim = next(c for c in MEASURED if c.measure == "windows.multiplications")
     monkeypatch.setenv(claims.SHARED, str(tmp_path))

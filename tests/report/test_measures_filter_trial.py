@@ -7,7 +7,7 @@ from ddlib.learning import cases
 from ddlib.setups import split
 from ddlib.simulation import LOG_STEP
 from workshop.report import committed
-from workshop.report._measures import filter_trial as trial
+from workshop.report.measures import filter_trial as trial
 from workshop.report.studies.nulls import TRIAL
 
 pytestmark = pytest.mark.usefixtures("planted_members")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from workshop.report import committed
-from workshop.report._measures import filters
+from workshop.report.measures import filters
 
 pytestmark = pytest.mark.usefixtures("planted_members")
 

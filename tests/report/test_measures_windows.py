@@ -12,7 +12,7 @@ from ddlib.learning import cases
 from ddlib.setups import STATE_FEEDBACK, split
 from ddlib.simulation import LOG_STEP
 from workshop.report import committed
-from workshop.report._measures import windows
+from workshop.report.measures import windows
 
 pytestmark = pytest.mark.usefixtures("planted_members")
 

@@ -43,6 +43,13 @@ def source(page: str) -> Path | None:
     return next((path for path in candidates if path.is_file()), None)
 
 
+def module_of(page: str) -> Path | None:
+    """The module of a lesson, or of an evidence page, in the package of its part, or None."""
+    name = page.rpartition("/")[2].replace("-", "_")
+    homes = (ROOT / "book" / package / "chapters" for package in ("workshop", "beyond"))
+    return next((home / f"{name}.py" for home in homes if (home / f"{name}.py").is_file()), None)
+
+
 def code_cells(path: Path) -> list[str]:
     """The code of a notebook, cell by cell."""
     cells = json.loads(path.read_text(encoding="utf-8"))["cells"]

@@ -6,25 +6,27 @@ import numpy as np
 from matplotlib.figure import Figure
 from pictures import drawn
 
+from beyond.chapters import (
+    adaptive_control,
+    joints_three_and_four as more_joints,
+    real_arm,
+    rivals,
+    run_time,
+    verdict,
+)
+from beyond.figures import maps
 from ddlib import figures as shared
 from ddlib.dynamics import CMU_DD_ARM_II, Operations
 from ddlib.figures import Illustration
 from ddlib.identification import Equations, least_squares
 from ddlib.learning import Weights
 from ddlib.logs import Log, LoggedRun, check_recording
-from workshop.beyond.figures import maps
 from workshop.chapters import (
-    adaptive_control,
     convolution_filters as filters,
     dynamics,
     feedforward,
     global_view,
-    joints_three_and_four as more_joints,
-    real_arm,
-    rivals,
-    run_time,
     trajectories_and_recording as recording,
-    verdict,
     what_lagrange_euler_leaves_out as left_out,
     whole_state_space as states,
     window_networks as windows,

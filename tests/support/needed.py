@@ -22,7 +22,7 @@ def needed(cells: list[str]) -> list[int]:
         for tree in trees
         for node in ast.walk(tree)
         if isinstance(node, ast.ImportFrom)
-        and re.match(r"ddlib\.widgets\b|workshop\.chapters\b", node.module or "")
+        and re.match(r"ddlib\.widgets\b|(workshop|beyond)\.chapters\b", node.module or "")
         for alias in node.names
         if re.match(r"[A-Z]+[a-z]", alias.name)
     }

@@ -12,8 +12,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 ROOMS = (
     *("ddlib", "ddlib/figures", "ddlib/widgets"),
-    *("book/workshop", "book/workshop/report", "book/workshop/beyond", "book/workshop/chapters"),
-    *("book/_ext", "book/_static", "benchmarks", "tests"),
+    *("book/workshop", "book/workshop/report", "book/workshop/chapters", "book/beyond"),
+    *("book/_ext", "book/_static", "benchmarks", "tests", "tests/beyond"),
 )
 """Folders. What lies in a room below another is counted in the lower one alone."""
 
@@ -55,7 +55,9 @@ def sizes(root: Path = ROOT) -> list[tuple[str, int, int, int, str]]:
     for room in ROOMS:
         python = {path: lines(path) for path in files(room, "py", root)}
         script = sum(lines(path) for suffix in ("js", "mjs") for path in files(room, suffix, root))
-        is_library = room.startswith(("ddlib", "book/workshop"))  # others are imported by nobody
+        is_library = room.startswith(
+            ("ddlib", "book/workshop", "book/beyond")
+        )  # others are imported by nobody
         names = sum(len(public_names(path, root)) for path in python) if is_library else 0
         by_name = {path.relative_to(root / room).as_posix(): n for path, n in python.items()}
         longest = max(by_name, key=by_name.get, default="")

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from book_pages import ROOT, code_cells
+from book_pages import ROOT, code_cells, module_of
 from ipywidgets.embed import embed_data
 
 from ddlib.widgets import module
@@ -136,9 +136,8 @@ def copied(page, name="Code") -> str:
 
 def code_of(chapter: str, name: str) -> str:
     """The text that a cell of a page, or its lesson's module, keeps under a name."""
-    lesson = chapter.removeprefix("evidence/").replace("-", "_")
-    module = ROOT / "book" / "workshop" / "chapters" / f"{lesson}.py"
-    kept = [module.read_text(encoding="utf-8")] if module.is_file() else []
+    module = module_of(chapter)
+    kept = [module.read_text(encoding="utf-8")] if module else []
     for source in code_cells(ROOT / "book" / f"{chapter}.ipynb") + kept:
         for line in ast.parse(source).body if f"{name} = " in source else ():
             if isinstance(line, ast.Assign) and line.targets[0].id == name:

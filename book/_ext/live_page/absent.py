@@ -13,11 +13,11 @@ from contextlib import contextmanager
 
 import numpy as np
 
-OURS = ("ddlib", "workshop")
+OURS = ("ddlib", "workshop", "beyond")
 ABSENT = ("torch", "yaml", "joblib", "sklearn", "traitlets", "IPython")
 """What ours may import and then not use; only in a cell itself is it an error to import it."""
 
-INERT = ("ddlib.widgets", "workshop.chapters.widgets", "tqdm")
+INERT = ("ddlib.widgets", "workshop.chapters.widgets", "beyond.chapters.widgets", "tqdm")
 """Modules in which every name is a class that takes anything and does nothing."""
 
 DESCENT = "ddlib.learning.descent"

@@ -55,7 +55,7 @@ const asked = new Set();
 async function get(module) {
   if (asked.has(module)) return false;
   asked.add(module);
-  if (module === "workshop") {
+  if (module === "workshop" || module === "beyond") {
     python.unpackArchive(await file("workshop.zip"), "zip", { extractDir: "/book" });
     return true;
   }

@@ -14,12 +14,12 @@ PNG = "ddlib-png"
 """Where the metadata of a figure's output have it as PNG."""
 
 
-def quoted(chapter: str) -> None:
-    """Quote the numbers of a chapter's prose, which its module's `_quoted` names.
+def quoted(chapter: str, package: str = __name__) -> None:
+    """Quote the numbers of a chapter's prose, which its module in the package names: `_quoted`.
 
     If ``DDLIB_PNG`` names its page, as in the book's build, its figures come as PNG, too.
     """
-    import_module(f"workshop.chapters.{chapter}")._quoted()
+    import_module(f"{package}.{chapter}")._quoted()
     if chapter.replace("_", "-") in os.environ.get("DDLIB_PNG", "").split():
         from IPython import get_ipython
 

@@ -30,8 +30,8 @@ from workshop.chapters.index import both
 from workshop.chapters.widgets import builder
 from workshop.chapters.widgets.builder import FilterBuilder as FilterBuilder
 from workshop.report import results
-from workshop.report._measures import filter_trial as trial
 from workshop.report.evidence.statements import resampled, stated
+from workshop.report.measures import filter_trial as trial
 
 
 def trained_unit() -> np.ndarray:

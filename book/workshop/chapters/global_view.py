@@ -29,10 +29,10 @@ from workshop.chapters.hinton_diagrams import before_and_after
 from workshop.chapters.start import values
 from workshop.chapters.window_networks import intervals
 from workshop.report import committed, results
-from workshop.report._measures import filter_trial
 from workshop.report.evidence import claims
 from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, median, rank_correlation
+from workshop.report.measures import filter_trial
 
 
 def in_transition(width: int, setup: str = STATE_FEEDBACK.name) -> Measured:

@@ -16,9 +16,9 @@ from ddlib.setups import JOINT_DAMPING, predict
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote
 from workshop.report import committed, results
-from workshop.report._measures import filter_trial as trial
 from workshop.report.evidence import cards
 from workshop.report.evidence.statements import resampled, stated
+from workshop.report.measures import filter_trial as trial
 
 WIDTH = 21
 _SHOWN = 150  # samples of the motion

@@ -22,8 +22,8 @@ from workshop.chapters.index import both
 from workshop.chapters.whose_filters import given, of_torques, trained
 from workshop.chapters.widgets.weigh import WeighTheArm as WeighTheArm
 from workshop.report import committed, results
-from workshop.report._measures import filter_trial as trial
 from workshop.report.evidence.statements import resampled, stated
+from workshop.report.measures import filter_trial as trial
 from workshop.report.studies.nulls import TRIAL
 
 _WIDTH = 21

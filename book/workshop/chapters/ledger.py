@@ -21,7 +21,6 @@ from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place, t
 from workshop import BOOK
 from workshop.chapters.trajectories_and_recording import random_draws
 from workshop.report import results
-from workshop.report._measures.filters import parts_sum_up
 from workshop.report.evidence.cards import (
     LISTS,
     OWN,
@@ -35,6 +34,7 @@ from workshop.report.evidence.cards import (
 from workshop.report.evidence.claims import Claim, load
 from workshop.report.evidence.verdicts import DECIDED, share_told
 from workshop.report.evidence.wall import Tiles, home, mark, window
+from workshop.report.measures.filters import parts_sum_up
 
 _FILE = BOOK / "errata.yml"  # Where the errata are kept
 

@@ -30,8 +30,8 @@ from workshop.chapters.exercises import Exercise, judging
 from workshop.chapters.widgets.starts import UnitFromFiveStarts as UnitFromFiveStarts
 from workshop.chapters.widgets.whose import GuessRound, WhoseFilters as WhoseFilters
 from workshop.report import results
-from workshop.report._measures import filter_trial as trial
 from workshop.report.evidence.statements import resampled, stated
+from workshop.report.measures import filter_trial as trial
 from workshop.report.studies.nulls import TRIAL
 from workshop.report.studies.start import RANGES
 

@@ -34,9 +34,9 @@ from ddlib.tables import Table, how_many, quote, significant
 from workshop.chapters.exercises import Between, Exercise, OneOf, judging
 from workshop.chapters.widgets.window import HiddenTorque
 from workshop.report import results
-from workshop.report._measures import filter_trial
 from workshop.report.evidence import claims
 from workshop.report.evidence.statements import resampled, stated
+from workshop.report.measures import filter_trial
 
 _KINDS = ("training", "test")
 _NAMES = {"training": "training", "test": "trajectory 6"}

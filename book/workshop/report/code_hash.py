@@ -20,7 +20,10 @@ from ddlib._check import one_of
 from workshop import BOOK
 
 # Folders of the packages whose code is followed
-_ROOTS = {"ddlib": Path(ddlib.__file__).parent, "workshop": BOOK / "workshop"}
+_ROOTS = {
+    "ddlib": Path(ddlib.__file__).parent,
+    **{name: BOOK / name for name in ("workshop", "beyond")},
+}
 
 # Module of functions ``check(name, value, ...)`` that hand a value on or refuse it
 _CHECKS = "_check"

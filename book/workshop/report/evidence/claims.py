@@ -17,8 +17,9 @@ An entry has these fields:
 ``printed``
     The printed value: a number, or text such as "by eye"; `_OWN` for what this book claims itself.
 ``measure`` or ``find``, ``with``
-    A function of `workshop.report._measures` as "module.function", and its keyword arguments, or
-    one of `workshop.beyond._measures` or `workshop.chapters` with "beyond." or "chapters." before;
+    A function of `workshop.report.measures` as "module.function", and its keyword arguments, or
+    one of `workshop.chapters` with "chapters." before, or one of Part IV by its full name,
+    "beyond.module.function";
     or an expression of `workshop.report.evidence.expressions`, and what its placeholders stand for.
 ``band``, ``loose``
     What makes the claim "reproduced", and what still makes it "qualitative": ``{factor: 1.5}``
@@ -291,10 +292,10 @@ def _measured(way: str) -> Measured:
 
 def _function(measure: str) -> Callable:
     """The function that a claim names: "module.function", with another room's name in front."""
-    room, _, rest = measure.partition(".")
-    place = {"beyond": f"beyond._measures.{rest}", "chapters": measure}
-    module, _, name = place.get(room, f"report._measures.{measure}").rpartition(".")
-    return getattr(importlib.import_module(f"workshop.{module}"), name)
+    room = measure.partition(".")[0]
+    places = {"beyond": measure, "chapters": f"workshop.{measure}"}
+    module, _, name = places.get(room, f"workshop.report.measures.{measure}").rpartition(".")
+    return getattr(importlib.import_module(module), name)
 
 
 def _measure(way: str) -> Measured:

@@ -1,0 +1,1 @@
+"""Widgets of single chapters of Part IV, with their scripts beside them."""

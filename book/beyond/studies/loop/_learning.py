@@ -1,0 +1,151 @@
+"""Sections 1.2 and 7.1: learners in the loop, trial by trial."""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import replace
+
+import numpy as np
+
+from beyond.control.adaptive import Watched
+from beyond.control.feedback_error import GenericTerms, RigidBodyTerms
+from beyond.control.guarded import _Guarded
+from beyond.control.online import _Abreast
+from beyond.studies.loop import learners
+from ddlib.control import Feedforward
+from ddlib.dynamics import Arm, end_point_error, with_load
+from ddlib.learning import Weights
+from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
+from ddlib.simulation import follow
+from ddlib.trajectories import Trajectory, pick_and_place
+from workshop.report.code_hash import study
+
+_LOAD = 5.0  # kg, in the hand from half-way on
+_TESTS = ((15.0, 15.0), (40.0, 20.0), (20.0, 40.0))  # extents, degrees
+_RATES = (0.1, 0.3, 1.0, 3.0, 10.0)  # multiples of the rates chosen
+
+
+def _trial(draw: learners.Draw, controllers, rows, references, t, arm: Arm | None = None):
+    """End-point errors (mm, RMS), (rows, seeds), and stops of one trial of controllers abreast."""
+    arm, guard = arm or draw.setup.arm, Watched(_Guarded(_Abreast(controllers, rows)))
+    run = follow(arm, guard, references, t, effects=draw.effects)
+    off = np.linalg.norm(end_point_error(arm, run.reference.q, run.q_true), axis=-1)
+    during = (run.t > -1e-9) & (run.t < -10 * t[0] - 1e-9)  # the rest is a tenth of the motion
+    return 1e3 * np.sqrt((off[..., during] ** 2).mean(-1)), guard.law.stops
+
+
+def _repeated(reference: Trajectory, count: int) -> Trajectory:
+    return Trajectory(*(np.broadcast_to(x, (count, *x.shape)) for x in reference))
+
+
+def _practise(draw, pupils, reference, t, tested: Trajectory | None = None):
+    """Trials of one motion: errors by trial of each learner, and of a second motion on the way."""
+    errors = {name: [] for name in pupils}
+    rows = [1] * len(pupils) * (2 if tested else 1)
+    for _ in range(learners._TRIALS):
+        now = [learner.controller() for learner in pupils.values()]
+        frozen = [x.controller(False) for x in pupils.values()] if tested else []
+        every = _repeated(reference, len(now))
+        if tested:
+            more = _repeated(tested, len(now))
+            every = Trajectory(*(np.concatenate(pair) for pair in zip(every, more)))
+        found = _trial(draw, now + frozen, rows, every, t)[0].reshape(-1, len(now), draw.seeds)
+        for k, (name, learner) in enumerate(pupils.items()):
+            errors[name].append(found[:, k])
+            learner.keep(now[k])
+    return {name: np.array(each) for name, each in errors.items()}
+
+
+def _motion(draw: learners.Draw) -> dict:
+    """Practise one motion, be asked for others, go on to the other extents."""
+    pupils, asked = learners._lineup(draw), learners.motions(draw)
+    t, reference = asked["the same"]
+    first = _practise(draw, pupils, reference, t)
+    tests = {}
+    plain = [draw.plain, Feedforward(draw.equations, draw.setup.controller)]
+    for name, (times, wanted) in asked.items():
+        frozen = [learner.controller(False) for learner in pupils.values()]
+        learning = [copy.deepcopy(learner).controller() for learner in pupils.values()]
+        count = len(plain) + 2 * len(pupils)
+        every = _repeated(wanted, count)
+        found, _ = _trial(draw, plain + frozen + learning, [1] * count, every, times)
+        tests[name] = {
+            "no feedforward": found[0],
+            "exact equations": found[1],
+            "frozen": dict(zip(pupils, found[2:])),
+            "learning": dict(zip(pupils, found[2 + len(pupils) :])),
+        }
+    second = _practise(draw, pupils, asked["other extents"][1], t, reference)
+    return {
+        "practice": {name: x[:, 0] for name, x in first.items()},
+        "tests": tests,
+        "other": {name: x[:, 0] for name, x in second.items()},
+        "forgetting": {name: x[:, 1] for name, x in second.items()},
+    }
+
+
+def _family(draw: learners.Draw) -> dict:
+    """Practise members of the paper's family; a load from half-way on; tests on three motions."""
+    pupils, t = learners._candidates(draw), learners.grid()
+    loaded = with_load(draw.setup.arm, _LOAD)
+    tests = [pick_and_place(np.tile(extents, (draw.seeds, 1)), t) for extents in _TESTS]
+    practice, tested = ({name: [] for name in ("no feedforward", *pupils)} for _ in range(2))
+    rows, size = [1 + len(_TESTS)] + [1, len(_TESTS)] * len(pupils), 1 + len(_TESTS)
+
+    def once(trial_number, arm, learning=True):
+        own = pick_and_place(draw.family[:, trial_number], t)
+        every = (np.stack(parts) for parts in zip(own, *tests))
+        every = Trajectory(*(np.concatenate([x] * (1 + len(pupils))) for x in every))
+        controllers = [draw.plain]
+        for learner in pupils.values():
+            controllers += [learner.controller(learning), learner.controller(False)]
+        found = _trial(draw, controllers, rows, every, t, arm)[0]
+        return found.reshape(1 + len(pupils), size, draw.seeds)
+
+    for k in range(2 * learners._TRIALS):
+        arm = draw.setup.arm if k < learners._TRIALS else loaded
+        for name, found in zip(practice, once(k, arm)):
+            practice[name].append(found[0])
+            tested[name].append(found[1:].mean(0))
+    after = once(0, draw.setup.arm, learning=False)
+    last = once(0, loaded, learning=False)
+    return {
+        "practice": {name: np.array(x) for name, x in practice.items()},
+        "tests": {name: np.array(x) for name, x in tested.items()},
+        "at the end": {name: x[1:].mean(0) for name, x in zip(practice, last)},
+        "without the load again": {name: x[1:].mean(0) for name, x in zip(practice, after)},
+    }
+
+
+def _rates(draw: learners.Draw) -> dict:
+    """Six trials of one motion at several rates: the last error, and who was stopped."""
+    t, reference = learners.motions(draw)["the same"]
+    many, rates = len(_RATES), np.array(_RATES)[:, None]
+    tiled = {n: np.repeat(x, many, axis=0) for n, x in vars(draw.untrained.weights).items()}
+    model = replace(draw.untrained, weights=Weights(**tiled))
+    pupils = {
+        "exact terms": learners.Terms(RigidBodyTerms(learners.NAMES), draw, learners._RATE * rates),
+        "generic terms": learners.Terms(GenericTerms(), draw, learners._RATE * rates),
+        "network, by feedback": learners._by_feedback(model, draw, rates + np.zeros(draw.seeds)),
+    }
+    every, stopped = _repeated(reference, many * len(pupils)), False
+    for _ in range(learners._TRIALS // 2):
+        now = [learner.controller() for learner in pupils.values()]
+        errors, stops = _trial(draw, now, [many] * len(now), every, t)
+        stopped = stopped | stops.stopped
+        for learner, controller in zip(pupils.values(), now):
+            learner.keep(controller)
+    shape = (len(pupils), many, draw.seeds)
+    errors, stopped = errors.reshape(shape), np.reshape(stopped, shape)
+    return {name: {"error": e, "stopped": s} for name, e, s in zip(pupils, errors, stopped)}
+
+
+@study
+def _learning_in_the_loop() -> dict:
+    """End-point errors of all learners, mm, for each reading of section 4."""
+    found = {}
+    for setup in (JOINT_DAMPING, STATE_FEEDBACK):
+        draw = learners.Draw(setup)
+        parts = {"motion": _motion(draw), "family": _family(draw), "rates": _rates(draw)}
+        found[setup.name] = parts
+    return {"setups": found, "rates": _RATES, "trials": learners._TRIALS, "load": _LOAD}
