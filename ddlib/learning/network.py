@@ -1,4 +1,10 @@
-"""The window network of section 3 as arrays, and with its scaling: radians to newton metres."""
+"""The window network of section 3 as arrays, and with its scaling: radians to newton metres.
+
+Weights have two forms. `Weights` has five arrays with the names of section 3: this is what is read,
+drawn and saved. Descent, Levenberg-Marquardt and the tangent compute with two matrices: `rows`,
+a row for each unit that sees the window, with its bias in the last column, and the weights from
+hidden units to outputs; `from_rows` leads back. PyTorch modules have the five arrays as parameters.
+"""
 
 from __future__ import annotations
 
