@@ -80,7 +80,7 @@ def shorten_values(app, doctree):
 def leave_sources(app, doctree):
     """Name no module to `sphinx.ext.viewcode`, which comes next, whose source has no page."""
     for signature in doctree.findall(addnodes.desc_signature):
-        if not signature.get("module", "").startswith(SHOWN):
+        if not (signature.get("module") or "").startswith(SHOWN):
             signature["module"] = ""
 
 
