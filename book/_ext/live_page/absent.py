@@ -22,7 +22,7 @@ INERT = ("tqdm",)
 """Modules in which every name is a class that takes anything and does nothing."""
 
 DESCENT = "ddlib.learning.descent"
-PICTURE = "ddlib.widgets._baking.still"  # of a widget's start, for pages without script
+PICTURE = "ddlib.widgets.still"  # of a widget's start, for pages without script
 
 
 class _Absent(type):
