@@ -199,3 +199,114 @@ def test_open_cells_run_through_in_the_page(browser, site, page):
     assert all(times := tab.locator(".live-time").all_inner_texts())
     assert len(times) == len(live.live_cells(lesson(page)))
     assert not tab.locator(".live-error, .live-warning, .live-note:has(a)").all_inner_texts()
+
+
+def marked(tab) -> list[str]:
+    return [said for said in tab.locator(".live-mark").all_inner_texts() if said]
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+def test_work_is_judged_and_kept_on_the_device_alone(browser, site, tmp_path):
+    """A change, an exercise, the solution beside it; a file; all erased and there again."""
+    tab, wrong = browser.new_page(accept_downloads=True), []
+    tab.on("dialog", lambda dialog: dialog.accept())
+    tab.on("pageerror", lambda error: wrong.append(str(error)))
+    page, cells = "book/feedback", live.live_cells(lesson("book/feedback"))
+    answer = next(k for k, cell in enumerate(cells) if cell["kind"] == "answer")
+    tab.goto(f"{site}/{page}.html")
+    tab.get_by_role("button", name="Run this page").click()
+    tab.locator(IDLE).wait_for(timeout=900_000)
+    name = f"cell {answer + 1}"
+    mine = tab.get_by_role("textbox", name=f"Code of {name}", exact=True)
+    summary = tab.locator(".live-own summary")
+    assert summary.inner_text().startswith("Solved: 0 of ") and not marked(tab)
+
+    def run(field):
+        field.press("Control+Enter")
+        tab.wait_for_timeout(200)
+        tab.locator(IDLE).wait_for(timeout=300_000)
+
+    tab.get_by_role("button", name="Run the solution").first.click()
+    tab.locator(".live-beside >> text=Right").wait_for(timeout=300_000)
+    assert "mine = ..." in mine.input_value()  # the reader's own is as it was
+    mine.fill("mine = F / (1.5 * period)")
+    run(mine)
+    yours = tab.locator(".live-beside .live-output").first
+    assert yours.inner_text().startswith("Right") and "Solved: 1 of " in summary.inner_text()
+    slider = tab.get_by_role("slider").last  # the load: of three cells, one differs from the next
+    slider.press("ArrowRight")
+    tab.get_by_role("button", name="Run what follows").click()
+    tab.wait_for_timeout(200)
+    tab.locator(IDLE).wait_for(timeout=300_000)
+    assert not marked(tab)
+    summary.click()
+    with tab.expect_download() as saved:
+        tab.get_by_role("button", name="Save as a file").click()
+    saved.value.save_as(tmp_path / "work.json")
+    kept = json.loads((tmp_path / "work.json").read_text(encoding="utf-8"))["pages"]
+    assert kept["feedback.html"]["solved"] == [cells[answer]["id"]]
+    assert not violations(tab)
+    tab.reload()
+    assert "Solved: 1 of " in summary.inner_text()
+    tab.get_by_role("button", name="Run this page").click()
+    assert mine.input_value() == "mine = F / (1.5 * period)"
+    summary.click()
+    tab.get_by_role("button", name="Erase").click()
+    assert "Solved: 0 of " in summary.inner_text() and "mine = ..." in mine.input_value()
+    assert not tab.evaluate("Object.keys(localStorage).filter((key) => key.startsWith('live'))")
+    with tab.expect_file_chooser() as asked:
+        tab.get_by_role("button", name="Open a file").click()
+    asked.value.set_files(tmp_path / "work.json")
+    tab.locator(".live-own >> text=is here again").wait_for()
+    assert "Solved: 1 of " in summary.inner_text()
+    tab.get_by_role("button", name="Stop").click()
+    run(mine)  # in a Python that has run nothing: what it needs of the cells above runs first
+    tab.locator(".live-output >> text=Right").wait_for(timeout=300_000)
+    assert not wrong
+
+
+BROKEN = {  # code, and what stands below the cell
+    "x = (1,\ny = 2": "Python cannot read line 1",
+    "x = bytes(2**31 - 100)\ny = x + x": "more memory than a page has",
+    "1 / 0": "ZeroDivisionError",
+}
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+def test_a_page_goes_on_after_whatever_a_cell_does(browser, site):
+    tab, wrong = browser.new_page(), []
+    refuse = "Object.defineProperty(window, 'localStorage', {get() { throw new Error('blocked') }})"
+    tab.add_init_script(refuse)
+    tab.on("pageerror", lambda error: wrong.append(str(error)))
+    tab.goto(f"{site}/book/feedback.html")
+    tab.get_by_role("button", name="Run this page").click()
+    tab.get_by_role("button", name="Stop").click()
+    field, output = tab.get_by_role("textbox").first, tab.locator(".live-output").first
+
+    def run(source, timeout=300_000):
+        field.fill(source)
+        field.press("Control+Enter")
+        tab.wait_for_timeout(200)
+        tab.locator(IDLE).wait_for(timeout=timeout)
+        return output.inner_text()
+
+    for source, told in BROKEN.items():
+        assert told in run(source), source
+        assert field.input_value() == source and run("print(6 * 7)").strip() == "42"
+    assert not run("").strip()
+    field.fill("while True: pass")
+    field.press("Control+Enter")
+    tab.get_by_text("Running cell 1").first.wait_for(timeout=300_000)
+    tab.get_by_role("button", name="Stop").click()
+    tab.locator(".live-output >> text=Stopped").wait_for(timeout=60_000)
+    assert run("print(6 * 7)").strip() == "42"
+    try:
+        tab.workers[-1].evaluate("self.close()")
+    except Exception:  # it cannot answer any more
+        pass
+    assert "Python broke off" in run("print(1)", 60_000)
+    assert run("print(6 * 7)").strip() == "42"
+    assert "keeps nothing for this site" in tab.locator(".live-kept").text_content()
+    assert not wrong

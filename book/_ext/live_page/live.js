@@ -409,7 +409,7 @@
 
   // The solution runs where the answer stands, and what it gives to names is not kept.
   function beside(answer, check) {
-    if (!answer.extra) {
+    if (!answer.beside) {
       const told = make("div", { class: "live-output", role: "group" });
       told.setAttribute("aria-label", `Output of the solution of ${answer.name}`);
       const ours = make("div", {}, make("p", { class: "live-head" }, "The solution"), told);
@@ -417,13 +417,13 @@
       const both = make("div", { class: "live-beside" }, yours, ours);
       check.told.before(both);
       yours.append(check.told);
-      answer.extra = {
+      answer.beside = {
         name: `solution of ${answer.name}`, place: answer.place, el: check.el, told, built: [],
         source: `${answer.solution}\n${check.source}`, names: answer.solves, extra: true, away: [],
         kind: "solution", time: check.time,
       }; // prettier-ignore
     }
-    enqueue([answer.extra]);
+    enqueue([answer.beside]);
   }
 
   // What the book shows makes room for what the reader's code gives: two figures may share an id.
@@ -454,7 +454,7 @@
       restore(cell);
       emptied(cell);
       cell.told.append(...(cell.needs ? [note("torch", cell.needs)] : []));
-      if (cell.extra) emptied(cell.extra);
+      if (cell.beside) emptied(cell.beside);
       Object.assign(cell, { shown: cell.source, stale: false, failed: false, asked: false });
       Object.assign(cell, { names: cell.asBuilt, prints: undefined, altered: undefined });
       if (cell.time) cell.time.textContent = "";
@@ -706,7 +706,10 @@
       const those = cell.extra ? cells.with(cell.place, cell) : cells;
       const graph = follow.graph(those);
       const lists = [...graph[cell.place].from.values()].flat();
-      const missing = lists.map((k) => cells[k]).filter((c) => !c.turn && !waiting.has(c));
+      // of code that was changed and has not run yet, nobody knows what it needs
+      const above = text(cell) === cell.shown || cell.extra ? [] : cells.slice(0, cell.place);
+      const needed = [...lists.map((k) => cells[k]), ...above.filter((c) => c.kind === "open")];
+      const missing = needed.filter((c) => !c.turn && !c.needs && !waiting.has(c));
       const bad = missing.length || cell.extra ? undefined : spoiled(graph, cell.place);
       if (!missing.length && !bad) return cell;
       for (const one of missing) waiting.add(one);
