@@ -83,7 +83,7 @@ class CurveWidget(PageWidget):
     Raises
     ------
     ValueError
-        If arguments do not fit together, or if the table needs more than 400 kB.
+        If arguments do not fit together, or if the table needs more than 500 kB.
     """
 
     _esm = bundle("curves.js")

@@ -16,7 +16,7 @@ import numpy as np
 from ddlib._check import finite_array
 from ddlib.widgets.parts.parameters import Choice, Parameter
 
-_MAX_BYTES = 400_000  # of the table of one widget
+_MAX_BYTES = 500_000  # of the table of one widget; it is plain, and whoever serves it packs it
 _MAX_VALUES = 6_000_000  # settings times samples that are computed for it
 _LAST = 2**16 - 1  # largest integer: the upper end of a curve's range
 
