@@ -91,8 +91,8 @@ def test_unfit_functions_are_refused():
         tabled(lambda a: {"y": np.zeros(2 if a < 0.5 else 3)}, axis)
     with pytest.raises(TypeError, match="must return a dict"):
         tabled(lambda a: np.zeros(3), axis)
-    many = [Parameter("a", "a", 0, 1, 0, grid=5001)]
-    with pytest.raises(ValueError, match="at most 400000 baked bytes, got 410082"):
+    many = [Parameter("a", "a", 0, 1, 0, grid=6501)]
+    with pytest.raises(ValueError, match="at most 500000 baked bytes, got 533082"):
         tabled(lambda a: {"y": a * T}, many)
     with pytest.raises(ValueError, match="at most 6000000 values"):
         tabled(lambda a: {"y": a * T}, [Parameter("a", "a", 0, 1, 0, grid=200_000)])
