@@ -221,6 +221,8 @@ def test_work_is_judged_and_kept_on_the_device_alone(browser, site, tmp_path):
     mine = tab.get_by_role("textbox", name=f"Code of {name}", exact=True)
     summary = tab.locator(".live-own summary")
     assert summary.inner_text().startswith("Solved: 0 of ") and not marked(tab)
+    asked = tab.locator(".live-output .exercise-answer").all_inner_texts()
+    assert asked and all(said.startswith("Put your answer in place") for said in asked)
 
     def run(field):
         field.press("Control+Enter")
