@@ -1,8 +1,9 @@
 """What programs, assistants and citers read: claims as data, lessons as plain text.
 
-- ``claims.json``: each claim with what is printed, what is found, its verdict and its address
+- ``claims.json``: each claim with what the report prints, what the book finds, the verdict, and the
+  address of the ledger's entry
 - ``llms.txt``: what the book is and where its texts are (the format of llmstxt.org)
-- ``text/NAME.md``: a page as Markdown with its open code, the numbers of the book in it
+- ``text/NAME.md``: a page as Markdown, with the code that is not folded and the book's numbers
 """
 
 from __future__ import annotations
@@ -16,9 +17,16 @@ import yaml
 from dd_lessons import chapters
 from dd_reader import NOTE
 
+# What is written, below the root of the site
 CLAIMS, TEXTS, MAP = "claims.json", "text", "llms.txt"
+
+# Files of the clone that only the whole book has
 CITED, LEDGER = "CITATION.cff", "book/ledger.ipynb"
+
+# A number of the book in a reader's notebook, as `dd_reader` writes it
 NUMBER = re.compile(r"<abbr title=\"the book's number\">(.*?)</abbr>")
+
+# How `MAP` begins
 SAID = """# {title}
 
 > {about}
@@ -36,24 +44,29 @@ from the run that made these pages.
 
 
 def claims(root: Path) -> dict:
-    """Every claim with its numbers and its address below the first page of the site."""
+    """What `CLAIMS` holds: every claim with its numbers and its address, and what made them.
+
+    Addresses are relative to the root of the site.
+    """
     from workshop.report.code_hash import code_hash, places
     from workshop.report.evidence.claims import load
 
     kept = json.loads((root / "book" / "results" / "verdicts.json").read_text(encoding="utf-8"))
     cited = yaml.safe_load((root / CITED).read_text(encoding="utf-8"))
-    found = []
+    entries = []
     for claim in load():
+        # Like "reproduced: 0.935 0.93035 0.895 0.96": the verdict and the value; where it has
+        # replicates, their mean and the ends of their middle 95 %
         entry = kept["claims"].get(claim.id, "")
-        value, *spread = map(float, entry.partition(": ")[2].split()) if entry else (None,)
-        found.append(
+        value, *of_draws = map(float, entry.partition(": ")[2].split()) if entry else (None,)
+        entries.append(
             {
                 "id": claim.id,
                 "where": claim.where,
                 "claim": claim.claim,
                 "printed": claim.as_printed(),
                 "ours": value,
-                "middle 95 % of draws": spread[1:] or None,
+                "middle 95 % of draws": of_draws[1:] or None,
                 "verdict": claim.verdict,
                 "band": dict(claim.band) or None,
                 "why": claim.why,
@@ -69,14 +82,14 @@ def claims(root: Path) -> dict:
         "license": cited["license"],
         "digest of the results": kept["of results"],
         "code that made each result": {name: code_hash(name) for name in sorted(places())},
-        "claims": found,
+        "claims": entries,
     }
 
 
 def page(root: Path, chapter: str) -> str:
-    """Address of a chapter, or of an evidence page of its own."""
-    lesson = (root / "book" / f"{chapter}.ipynb").is_file()
-    return f"book/{chapter}.html" if lesson else f"book/evidence/{chapter}.html"
+    """Address of a chapter: a lesson, or else an evidence page without one."""
+    is_lesson = (root / "book" / f"{chapter}.ipynb").is_file()
+    return f"book/{chapter}.html" if is_lesson else f"book/evidence/{chapter}.html"
 
 
 def plain(notebook) -> str:
@@ -85,18 +98,19 @@ def plain(notebook) -> str:
     for cell in notebook.cells:
         source = cell.source.strip()
         if cell.cell_type == "markdown":
-            told = NUMBER.sub(r"\1", source).replace(".ipynb", ".md")
-            texts += [told] if source not in ("", NOTE) else []
+            words = NUMBER.sub(r"\1", source).replace(".ipynb", ".md")  # links lead to texts
+            texts += [words] if source not in ("", NOTE) else []
         elif source and not cell.metadata.get("jupyter", {}).get("source_hidden"):
             texts.append(f"```python\n{source}\n```")
     return "\n\n".join(texts) + "\n"
 
 
 def opening(text: str) -> tuple[str, str]:
-    """Title of a text, and its first sentences below."""
+    """Title of a text, and its first paragraph of prose on one line, without markup."""
     title = re.search(r"(?m)^# (.+)$", text)[1]
-    below = text.partition(title)[2]
-    paragraphs = (p.strip() for p in re.split(r"\n\s*\n", below))
+    body = text.partition(title)[2]
+    paragraphs = (paragraph.strip() for paragraph in re.split(r"\n\s*\n", body))
+    # Prose begins with a word, emphasis, a quotation or a bracket; the rest is code, lists, quotes
     first = next((p for p in paragraphs if re.match(r"[\w*\"“(]", p)), "")
     return title, re.sub(r"\s+", " ", re.sub(r"<[^>]+>|\[([^]]*)\]\([^)]*\)|[*`]", r"\1", first))
 
@@ -105,43 +119,46 @@ def parts(root: Path) -> list[tuple[str, list[str]]]:
     """Captions of the table of contents, and the pages below each, in its order."""
     toc = yaml.safe_load((root / "_toc.yml").read_text(encoding="utf-8"))
 
-    def under(entry: dict) -> list[str]:
+    def pages_of(entry: dict) -> list[str]:
         inner = entry.get("sections", []) + entry.get("chapters", [])
         own = [entry["file"]] if "file" in entry else []
-        return own + [page for one in inner for page in under(one)]
+        return own + [page for below in inner for page in pages_of(below)]
 
-    return [(part["caption"], under(part)) for part in toc["parts"]]
+    return [(part["caption"], pages_of(part)) for part in toc["parts"]]
 
 
 def write(app, exception):
-    """Once the readers' notebooks are there; of the whole book alone."""
+    """Write all three, from the readers' notebooks that `dd_reader` has put below ``_sources``.
+
+    Only the build of the whole book has them, not that of a few pages.
+    """
     root, out = Path(app.srcdir), Path(app.outdir)
-    whole = all((root / name).is_file() for name in (CITED, LEDGER))
-    if exception is not None or app.builder.format != "html" or not whole:
+    is_whole = all((root / name).is_file() for name in (CITED, LEDGER))
+    if exception is not None or app.builder.format != "html" or not is_whole:
         return
-    told = json.dumps(claims(root), indent=1, ensure_ascii=False)
-    (out / CLAIMS).write_text(told + "\n", encoding="utf-8")
-    texts = {}
+    as_json = json.dumps(claims(root), indent=1, ensure_ascii=False)
+    (out / CLAIMS).write_text(as_json + "\n", encoding="utf-8")
+    texts = {}  # by page: title and first words, and the address of its text
     for path in (root / "book" / "index.ipynb", *chapters(root)):
         name = path.relative_to(root).with_suffix("")
-        made = out / "_sources" / name.with_suffix(".ipynb")
+        readers = out / "_sources" / name.with_suffix(".ipynb")
         target = out / TEXTS / name.relative_to("book").with_suffix(".md")
         target.parent.mkdir(parents=True, exist_ok=True)
-        text = plain(nbformat.read(made, as_version=4))
+        text = plain(nbformat.read(readers, as_version=4))
         target.write_text(text, encoding="utf-8")
         texts[name.as_posix()] = opening(text), target.relative_to(out).as_posix()
     cited = yaml.safe_load((root / CITED).read_text(encoding="utf-8"))
     about = re.sub(r"\s+", " ", cited["abstract"]).strip()
-    told = SAID.format(title=cited["title"], about=about, claims=CLAIMS, texts=TEXTS)
+    contents = SAID.format(title=cited["title"], about=about, claims=CLAIMS, texts=TEXTS)
     for caption, pages in parts(root):
         lines = [
-            f"- [{title}]({at}): {first}"
-            for (title, first), at in (texts[name] for name in pages if name in texts)
+            f"- [{title}]({address}): {first}"
+            for (title, first), address in (texts[name] for name in pages if name in texts)
         ]
-        told += f"\n## {caption}\n\n" + "\n".join(lines) + "\n" if lines else ""
-    (out / MAP).write_text(told, encoding="utf-8")
+        contents += f"\n## {caption}\n\n" + "\n".join(lines) + "\n" if lines else ""
+    (out / MAP).write_text(contents, encoding="utf-8")
 
 
 def setup(app):
-    app.connect("build-finished", write, priority=600)  # after dd_reader's
+    app.connect("build-finished", write, priority=600)  # after dd_reader, which has the default
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,9 +1,14 @@
-"""What a reader's page has of a notebook's code: pieces to read, and plumbing out of sight.
+"""What a reader's page has of a notebook's code: pieces to read, and the rest out of sight.
 
-A cell without a tag stands open and is marked as code to read. `hide-input` is a fold that says
-how many lines it has. What the tags remove (`remove-cell`, `remove-input`) is not seen either, but
-it is on the page: one switch, made by `_static/reading.js`, shows all code. Answers (`hide-cell`)
-are folds of their own. Plumbing is not searched.
+What becomes of a code cell depends on its tag in the notebook:
+
+- none: it stands open, and is marked as code to read (`to-read`)
+- `hide-input`: plumbing, a fold that says how many lines it has
+- `remove-cell`, `remove-input`: bookkeeping, out of sight, but on the page nevertheless: one
+  switch, made by `_static/reading.js`, shows all code
+- `hide-cell`: an answer, a fold of its own
+
+Plumbing and bookkeeping are not searched.
 """
 
 from __future__ import annotations
@@ -18,23 +23,22 @@ REMOVED = {
     "remove-input": ("hide-input", "bookkeeping"),
     "hide-input": ("hide-input", "plumbing"),
 }
-"""By tag: the tags that it has on the page. `bookkeeping` shows by the switch alone."""
+"""By tag of a notebook's cell: the tags in its place on the page.
+
+MyST-NB would leave out removed code. So it becomes a fold, and styles keep one that has the tag
+`bookkeeping` out of sight until the switch shows it.
+"""
 
 READ = ("to-read",)
+"""What the page adds to the tags of a cell that stands open."""
 
 
 class Plumbing(nodes.comment):
-    """Code that a reader has to ask for; to the search it is what a comment is."""
+    """Code that a reader has to ask for, plumbing or bookkeeping; the search passes over it."""
 
 
 def page_tags(tags: list[str]) -> list[str]:
-    """The tags of a code cell as its page has them.
-
-    Parameters
-    ----------
-    tags : list of str
-        Those of the notebook's cell.
-    """
+    """The tags that a code cell has on its page, by those that it has in the notebook."""
     for tag, instead in REMOVED.items():
         if tag in tags:
             return [*instead, *(other for other in tags if other not in REMOVED)]
@@ -42,7 +46,7 @@ def page_tags(tags: list[str]) -> list[str]:
 
 
 def lines(source: str) -> str:
-    """How much code a cell hides, in words."""
+    """How much code a cell hides, in words: "3 lines of code", without blank ones."""
     count = len([line for line in source.splitlines() if line.strip()])
     return f"{count} line{'s' * (count != 1)} of code"
 
@@ -55,13 +59,14 @@ def as_on_the_page(cell: NotebookNode) -> NotebookNode:
     metadata["tags"] = page_tags(metadata.get("tags", []))
     if "hide-input" in metadata["tags"]:
         prompt = lines(cell.source)
+        # What stands on the fold, closed and open
         prompts = {"code_prompt_show": prompt, "code_prompt_hide": prompt}
         metadata["mystnb"] = {**prompts, **metadata.get("mystnb", {})}
     return NotebookNode({**cell, "metadata": NotebookNode(metadata)})
 
 
 class LeaveOutOfSearch(SphinxPostTransform):
-    """Plumbing in another kind of node, for HTML."""
+    """Put `Plumbing` in place of the code of hidden cells: Sphinx does not index comments."""
 
     default_priority = 190
     formats = ("html",)
@@ -76,6 +81,7 @@ class LeaveOutOfSearch(SphinxPostTransform):
 
 
 def visit(translator, node):
+    """Write it as any code is written."""
     translator.visit_literal_block(node)
 
 

@@ -16,10 +16,10 @@ from docutils import nodes
 from sphinx import addnodes
 
 FILE = "search-texts.js"
-SENTENCE = re.compile(r"(?<=[.?!:;]) ")
-FIRST = 2  # sentences of a section that are kept in any case; of evidence, one
-WORD = re.compile(r"[^\W\d_]{8,}")
-STEM = 7  # letters by which words are told apart
+SENTENCE = re.compile(r"(?<=[.?!:;]) ")  # the space between two sentences
+FIRST = 2  # so many sentences of a section are kept in any case; on evidence pages one
+WORD = re.compile(r"[^\W\d_]{8,}")  # a long word
+STEM = 7  # words that begin with the same letters, so many, count as one
 
 ELSEWHERE = re.compile(
     "paper-and-reproduction|further-reading"
@@ -28,11 +28,11 @@ ELSEWHERE = re.compile(
 """Sections whose sentences the ledger, the bibliography or the lessons have as well."""
 
 OWN = (nodes.section, addnodes.desc, nodes.table, nodes.literal_block, nodes.citation)
-"""What is found by itself, or is no prose."""
+"""What has an entry of its own, or is no prose."""
 
 
 def prose(node: nodes.Node) -> str:
-    """Words of a node, without what stands by itself."""
+    """Words of a node, without `OWN`, titles, images and comments; formulas are dots."""
     if isinstance(node, (nodes.math, nodes.math_block)):
         return "… " if isinstance(node, nodes.math_block) else "…"
     if isinstance(node, nodes.Text):
@@ -46,7 +46,10 @@ def prose(node: nodes.Node) -> str:
 
 
 def shortened(text: str, known: set[str], first: int = FIRST) -> str:
-    """Text on one line: its first sentences, and those with a long word that is not known yet."""
+    """Text on one line: its first sentences, and those with a long word that is not known yet.
+
+    Dots stand for what is left out. The stems of what is kept are added to `known`.
+    """
     kept = []
     for k, sentence in enumerate(SENTENCE.split(" ".join(text.split()))):
         stems = {word[:STEM] for word in WORD.findall(sentence.lower())}
@@ -61,33 +64,40 @@ def shortened(text: str, known: set[str], first: int = FIRST) -> str:
 def texts_of(doctree: nodes.document, first: int = FIRST) -> dict[str, str]:
     """Text by anchor: of sections, and of what a glossary explains."""
     found = {}
-    known = set()
+    known = set()  # stems of the words that the page has had
     for section in doctree.findall(nodes.section):
         if ELSEWHERE.fullmatch(section["ids"][0]):
             continue
         inside = "".join(prose(child) for child in section.children)
         found[section["ids"][0]] = shortened(inside, known, first)
     for item in doctree.findall(nodes.definition_list_item):
-        for name in (anchor for term in item.findall(nodes.term) for anchor in term["ids"]):
-            found[name] = shortened("".join(map(prose, item.findall(nodes.definition))), known)
-    for glossary in doctree.findall(addnodes.glossary):  # its terms say it all
+        for anchor in (term_id for term in item.findall(nodes.term) for term_id in term["ids"]):
+            found[anchor] = shortened("".join(map(prose, item.findall(nodes.definition))), known)
+    for glossary in doctree.findall(addnodes.glossary):  # each term has a text, so its section none
         found.pop(glossary.parent["ids"][0], None)
     return {anchor: text for anchor, text in found.items() if text}
 
 
 def gather(app, doctree, page):
-    """Keep a page's texts; pages are resolved in this process, whoever writes them."""
+    """Keep a page's texts in Sphinx's environment until `write`.
+
+    That works in parallel builds, too: Sphinx resolves all pages in its main process, and only
+    writes them in others.
+    """
     texts = texts_of(doctree, 1 if page.startswith("book/evidence/") else FIRST)
     app.env.dd_search_texts = {**getattr(app.env, "dd_search_texts", {}), page: texts}
 
 
 def write(app, exception):
-    """Write the texts of all pages that there are."""
+    """Write the texts of all pages, as a call of the function of `search-order.js`.
+
+    Pages that an earlier build had, and which are gone, are left out.
+    """
     if app.builder.format == "html" and exception is None:
         texts = getattr(app.env, "dd_search_texts", {})
         kept = {page: texts[page] for page in sorted(texts) if page in app.env.found_docs}
-        said = json.dumps(kept, ensure_ascii=False, separators=(",", ":"))
-        Path(app.outdir, "_static", FILE).write_text(f"searchTexts({said})\n", encoding="utf-8")
+        as_json = json.dumps(kept, ensure_ascii=False, separators=(",", ":"))
+        Path(app.outdir, "_static", FILE).write_text(f"searchTexts({as_json})\n", encoding="utf-8")
 
 
 def setup(app):

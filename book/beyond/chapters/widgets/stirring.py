@@ -1,4 +1,8 @@
-"""Circles of the hand: place one in the workspace, see motion, torques and errors of the hand."""
+"""A widget for circles of the hand: place one in the workspace, see its torques and errors.
+
+The study ``stirring`` has computed torques and errors on a grid of circles, `PLACES`; joint angles
+are computed here.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +31,7 @@ _LINES = {
     "exact behind a window": "equations",
     "pick and place": "network of pick-and-place",
     "circles": "network of circles",
-}  # whose torques are shown, and what the legend calls them
+}  # by the study's name: whose torques are shown, and what the legend calls them
 
 _BARS = {
     "none": "none",
@@ -35,8 +39,8 @@ _BARS = {
     "pick and place": "pick",
     "circles": "circles",
     "both": "both",
-}  # what stood in the box "inverse arm", and what the bars call it
-_BOX = (-0.35, -1.0, 0.95, 0.35)  # what is drawn: left, bottom, right, top, m from the shoulder
+}  # by the study's name: what gave the torques sent in advance, and what the bars call it
+_DRAWN = (-0.35, -1.0, 0.95, 0.35)  # left, bottom, right, top of the pad, m from the shoulder
 _ARM = JOINT_DAMPING.arm
 
 _NOTE = (
@@ -51,7 +55,7 @@ class StirringPicker(CurveWidget):
     """Drag a circle through the workspace; see joint angles, torques, and the hand's errors.
 
     A circle that the hand cannot follow, or only with the arm stretched, is refused with a
-    sentence. Its curves are zero. `path` holds what the study ``stirring`` kept.
+    sentence, and its curves are zero. `path` is the file that the study ``stirring`` writes.
     """
 
     _esm = bundle(_HERE / "stirring.js")
@@ -64,13 +68,15 @@ class StirringPicker(CurveWidget):
         with np.load(path) as arrays:
             names = arrays["names"].tolist()
             self._hand = dict(zip(names, arrays["hand"].astype(float)))
+            # The first name, "none", has no torques; those of the last, "both", are not kept.
             self._torque = dict(zip(names[1:], arrays["torque"].astype(float)))
-            self._reached = arrays["reached"]
+            self._reached = arrays["reached"]  # which circles the hand can follow
+        # Every sample of the log whose number `SHOWN` divides
         times = np.arange(round(MOTION_SECONDS / LOG_STEP / SHOWN)) * LOG_STEP * SHOWN
         self._times = times
         seconds = "time, s"
         panels = [
-            Panel("Joint angles, °", {f"{j} angle": j for j in JOINTS}, seconds, times, y_fit=True),
+            Panel("Joint angles, °", {f"{n} angle": n for n in JOINTS}, seconds, times, y_fit=True),
             *(
                 Panel(
                     f"{joint.title()} torque, N m",
@@ -94,10 +100,10 @@ class StirringPicker(CurveWidget):
         super().__init__(
             self._curves,
             [
-                _steps("distance", "Distance of the centre", " m"),
-                _steps("bearing", "Direction of the centre", "°", 1),
-                _steps("radius", "Radius", " m", 2),
-                _steps("period", "Time of a turn", " s"),
+                _slider("distance", "Distance of the centre", " m"),
+                _slider("bearing", "Direction of the centre", "°", 1),
+                _slider("radius", "Radius", " m", 2),
+                _slider("period", "Time of a turn", " s"),
                 Choice("elbow", "Elbow angle", PLACES["elbow"], "negative"),
             ],
             panels,
@@ -110,33 +116,34 @@ class StirringPicker(CurveWidget):
                 **options,
             },
         )
-        lengths, limits = map(float, _ARM.lengths), list(reach(_ARM))
-        space = {
-            "lengths": list(lengths),
-            "reach": limits,
-            "box": list(_BOX),
+        workspace = {
+            "lengths": list(map(float, _ARM.lengths)),
+            "reach": list(reach(_ARM)),
+            "box": list(_DRAWN),
             "times": times.tolist(),
         }
-        self.set_trait("workspace", {**space, "times": times.tolist()})
+        self.set_trait("workspace", workspace)
 
     def _curves(self, **place) -> dict:
-        at = tuple(PLACES[name].index(place[name]) for name in PLACES)
+        """Curves of a circle, a value for each name in `PLACES`, by the panels' names for them."""
+        index = tuple(PLACES[name].index(place[name]) for name in PLACES)
         angles = np.zeros((len(self._times), len(JOINTS)))
-        if self._reached[at]:
-            values = (place[n] for n in ("radius", "period", "distance", "bearing"))
-            circle = Circles(*(np.array([v], float) for v in values), np.array([False]))
+        if self._reached[index]:
+            values = (place[name] for name in ("radius", "period", "distance", "bearing"))
+            circle = Circles(*(np.array([x], float) for x in values), clockwise=np.array([False]))
             angles = np.rad2deg(stirred(_ARM, circle, self._times, place["elbow"]).q[0])
         return {
             **{f"{joint} angle": angles[:, j] for j, joint in enumerate(JOINTS)},
             **{
-                f"{joint}, {line}": self._torque[line][at][:, j]
+                f"{joint}, {line}": self._torque[line][index][:, j]
                 for line in _LINES
                 for j, joint in enumerate(JOINTS)
             },
-            "hand": np.array([self._hand[name][at] for name in _BARS]),
+            "hand": np.array([self._hand[name][index] for name in _BARS]),
         }
 
 
-def _steps(name: str, label: str, unit: str, start: int = 2) -> Choice:
+def _slider(name: str, label: str, unit: str, start: int = 2) -> Choice:
+    """A slider over the values of `PLACES`; at first it has number `start` of them."""
     options = {value: f"{value}{unit}".replace("-", "−") for value in PLACES[name]}
     return Choice(name, label, options, PLACES[name][start], "slider")
