@@ -214,8 +214,8 @@ def runge_kutta_steps(arm: Arm, effects: Effects, step: float) -> np.ndarray:
     """Runge-Kutta steps that one control period needs, for each run by itself.
 
     Friction acts like a first-order decay of joint speed, fastest at rest; RK4 is stable up to 2.78
-    times its time constant, 2 is used. Of the fastest swing of springs a step covers `_PHASE`, of
-    shafts and of bristles that hold a joint.
+    times its time constant, 2 is used. Of the fastest swing of springs (those of shafts, and of
+    bristles that hold a joint) a step covers a quarter of a radian.
     """
     parts = _smooth_substeps(arm, effects, step)
     bristles = [np.asarray(f.stiffness) for f in effects.friction if hasattr(f, "start")]

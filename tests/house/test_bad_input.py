@@ -1,6 +1,6 @@
 """Bad input: every argument of a public call, replaced by what it cannot be, is refused by name.
 
-A new function joins by a line in `CALLS`: a call that works, with its arguments by name. What an
+A new function joins by a line in `_calls`: a call that works, with its arguments by name. What an
 argument cannot be follows from the kind of its value there (`_wrong`).
 """
 
