@@ -92,7 +92,7 @@ def taught(evaluate, widget, epochs, seed=1, inputs="centred", shift=None, step=
 def test_the_course_is_ddlibs(evaluate, widget, monkeypatch, inputs, shift, momentum):
     """Weights, errors, names and events of the first epochs, in double precision."""
     monkeypatch.setattr("ddlib.learning.descent._tensor", torch.tensor)
-    monkeypatch.setattr("ddlib.learning.descent._ONEDNN", False)  # single precision alone
+    monkeypatch.setattr("ddlib.learning._packed._HAS_ONEDNN", False)  # single precision alone
     epochs, seed = 60, 7
     page = taught(evaluate, widget, epochs, seed, inputs, shift, momentum=momentum)
     data, test = study._page_set(trainer._SCALINGS[inputs], shift)

@@ -86,6 +86,7 @@ class _Cell(ast.NodeVisitor):
         self.told = Names()
         self.imported = set(imported)
         self.sure: list[set[str]] = [set()]  # bound by now, in each branch around
+        self.parts: dict[str, set[str]] = {}  # of a loop's names: what they are parts of
 
     def statements(self, body):
         for node in body:
@@ -145,8 +146,16 @@ class _Cell(ast.NodeVisitor):
         self.sure[-1].add(name)
         self.imported.discard(name)
 
-    def change(self, name):
-        """In place: it had to be there, and is another one afterwards. Modules stay as they are."""
+    def change(self, name, whole=True):
+        """In place: it had to be there, and is another one afterwards. Modules stay as they are.
+
+        With a loop's name `whole` changes, too: what it is a part of.
+        """
+        if whole and name in self.parts:
+            of = self.parts.pop(name)  # loops may lead in a circle
+            for other in of - {name}:
+                self.change(other)
+            self.parts[name] = of
         if name not in self.sure[-1] and name not in self.imported:
             self.told.reads.add(name)
             self.told.changes.add(name)
@@ -210,7 +219,7 @@ class _Cell(ast.NodeVisitor):
         given = [*call.args, *(keyword.value for keyword in call.keywords)]
         for part in [call.func, *given] if method else given:
             for name in _bases(part):
-                self.change(name)
+                self.change(name, whole=part is call.func)
 
     def visit_Call(self, node):
         self.generic_visit(node)
@@ -233,6 +242,14 @@ class _Cell(ast.NodeVisitor):
     def visit_For(self, node):
         """Its body is taken to run at least once."""
         self.visit(node.iter)
+        targets, sources = [node.target], [node.iter]
+        if isinstance(node.iter, ast.Call) and isinstance(node.target, ast.Tuple):
+            if getattr(node.iter.func, "id", "") == "zip":
+                targets, sources = node.target.elts, node.iter.args
+        for target, source in zip(targets, sources):
+            if isinstance(source, ast.Name | ast.Attribute | ast.Subscript):
+                for name in _stored(target):
+                    self.parts[name] = set(_bases(source))
         self.statements([node.target, *node.body, *node.orelse])
 
     def visit_Try(self, node):
