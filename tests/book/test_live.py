@@ -4,16 +4,17 @@ import asyncio
 import hashlib
 import html
 import json
-import os
 import re
 import sys
 
 import chromium
+import live_pages
 import numpy as np
 import pytest
 from axe import violations
 from book_pages import ROOT, WALK
 from chapter_rules import is_check, is_starter, visible
+from live_pages import IDLE, plain
 from open_cells import lesson
 
 from ddlib.learning import Descent, TrainingSet, Weights
@@ -25,9 +26,7 @@ import absent
 import kernel
 import live
 
-MIRROR = os.environ.get("DDLIB_LIVE_MIRROR", "")
-POLICY = f"{chromium.POLICY}; script-src 'self' 'unsafe-inline' blob: 'wasm-unsafe-eval'"
-IDLE, FOCUSED = "html[data-live=idle]", "(el) => el === document.activeElement"
+FOCUSED = "(el) => el === document.activeElement"
 
 
 def entry(name: str) -> dict:
@@ -85,15 +84,6 @@ def test_pyodides_address_has_its_version():
     assert re.fullmatch(rf"https://\S+/v{re.escape(live.VERSION)}/full", live.PUBLIC)
 
 
-def plain(page: str) -> str:
-    """A page with the cells of a notebook, and nothing else."""
-    cell = '<div class="cell x"><div class="cell_input"><pre>{}</pre></div></div>'
-    code = (html.escape(c.source) for c in lesson(page).cells if c.cell_type == "code")
-    main = f"<main><section><h1>x</h1>{''.join(map(cell.format, code))}</section></main>"
-    head = '<html lang="en"><meta charset="utf-8"><title>x</title>'
-    return f"<!doctype html>{head}<body>{main}</body></html>"
-
-
 @pytest.mark.parametrize("page", WALK)
 def test_open_cells_and_checks_become_live(page):
     notebook = lesson(page)
@@ -143,17 +133,8 @@ def test_cells_say_what_they_cannot(monkeypatch):
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
-    """Pages with cells alone, live, on a server of their own."""
-    if not MIRROR:
-        pytest.skip("set DDLIB_LIVE_MIRROR to a folder or an address with Pyodide's packages")
-    folder = tmp_path_factory.mktemp("site")
-    (folder / "html" / "book").mkdir(parents=True)
-    for page in WALK:
-        (folder / "html" / f"{page}.html").write_text(plain(page), encoding="utf-8")
-    (folder / "html" / "index.html").touch()
-    live.write(ROOT, folder / "html", MIRROR, live.BUILD / "pyodide" / live.VERSION, folder / "out")
-    with pytest.MonkeyPatch.context() as patch, chromium.serve(folder / "out") as address:
-        patch.setattr(chromium, "POLICY", POLICY)
+    """All lessons with cells alone, live."""
+    with live_pages.served(tmp_path_factory.mktemp("site"), WALK) as address:
         yield address
 
 

@@ -1,21 +1,11 @@
 """*Run this page*: a widget in the page and its object in Python are one, in a browser."""
 
-import html
-import os
-import sys
-
-import chromium
+import live_pages
 import pytest
 from axe import violations
-from book_pages import ROOT
-from open_cells import lesson
+from live_pages import IDLE
 
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
-import live
-
-MIRROR = os.environ.get("DDLIB_LIVE_MIRROR", "")
-POLICY = f"{chromium.POLICY}; script-src 'self' 'unsafe-inline' blob: 'wasm-unsafe-eval'"
-IDLE, PAGE = "html[data-live=idle]", "book/feedback"
+PAGE = "book/feedback"
 PICKER = "from ddlib.widgets import TrajectoryPicker\npicker = TrajectoryPicker()\npicker"
 PICKED = "print(*picker.extents_deg, abs(picker.recording.q).max())"
 TRAINER = "from ddlib.widgets import NetworkTrainer\ntrainer = NetworkTrainer()\ntrainer"
@@ -24,23 +14,8 @@ TRAINED = "print(trainer.epoch, trainer.model.weights.width, trainer.error)"
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
-    """A page with cells alone, live, on a server of its own."""
-    if not MIRROR:
-        pytest.skip("set DDLIB_LIVE_MIRROR to a folder or an address with Pyodide's packages")
-    folder = tmp_path_factory.mktemp("site")
-    (folder / "html" / "book").mkdir(parents=True)
-    cell = '<div class="cell x"><div class="cell_input"><pre>{}</pre></div></div>'
-    code = (html.escape(c.source) for c in lesson(PAGE).cells if c.cell_type == "code")
-    main = f"<main><section><h1>x</h1>{''.join(map(cell.format, code))}</section></main>"
-    head = '<html lang="en"><meta charset="utf-8"><title>x</title>'
-    page = f"<!doctype html>{head}<body>{main}</body></html>"
-    (folder / "html" / f"{PAGE}.html").write_text(page, encoding="utf-8")
-    for name in ("index.html", "favicon.ico"):
-        (folder / "html" / name).touch()
-    kept = live.BUILD / "pyodide" / live.VERSION
-    live.write(ROOT, folder / "html", MIRROR, kept, folder / "out")
-    with pytest.MonkeyPatch.context() as patch, chromium.serve(folder / "out") as address:
-        patch.setattr(chromium, "POLICY", POLICY)
+    """A page with cells alone, live."""
+    with live_pages.served(tmp_path_factory.mktemp("site"), [PAGE]) as address:
         yield address
 
 
@@ -87,9 +62,4 @@ def test_what_is_picked_and_trained_in_the_page_python_has(browser, site):
     tab.wait_for_timeout(6_000)  # the page trains
     told = run(5, TRAINED).inner_text().split()
     assert told[:2] == ["100", "21"] and 0 < float(told[2]) < 2
-    if folder := os.environ.get("DDLIB_LIVE_PICTURES"):
-        for scheme in ("light", "dark"):
-            chromium.coloured(tab, scheme)
-            for k, one in enumerate((shown, page)):
-                one.screenshot(path=f"{folder}/widget-{k}-{scheme}.png")
     assert not wrong
