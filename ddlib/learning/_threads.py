@@ -1,10 +1,28 @@
-"""Work in threads that Ctrl-C ends soon, and that leaves what it reached."""
+"""Work in threads, each on one core, that Ctrl-C ends soon and that leaves what it reached."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
+from contextlib import contextmanager
 from threading import Event
+
+import torch
+
+
+@contextmanager
+def one_core_each():
+    """PyTorch on one core for each thread that is started inside, afterwards as it was before.
+
+    Threads that share out their products would wait for each other at every one of them. PyTorch
+    counts threads for the whole process: what runs beside this runs on one core, too, meanwhile.
+    """
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)
 
 
 def in_threads(work: Callable, items: Sequence, most: int, stop: Event) -> tuple[list, bool]:
@@ -14,7 +32,11 @@ def in_threads(work: Callable, items: Sequence, most: int, stop: Event) -> tuple
     then return what it has.
     """
     interrupted, futures = False, []
-    with ThreadPoolExecutor(min(most, len(items))) as pool:
+    # OpenMP asks each thread anew
+    pool = ThreadPoolExecutor(
+        min(most, len(items)), initializer=torch.set_num_threads, initargs=(1,)
+    )
+    with one_core_each(), pool:
         try:
             futures += (pool.submit(work, item) for item in items)
             left = set(futures)

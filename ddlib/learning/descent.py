@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import closing
 from threading import Event
 
 import numpy as np
@@ -116,13 +117,8 @@ def train_ensemble(
         descent = Descent(start, data.x, y, rate[block] / len(data.x), momentum[block])
         return _train_block(descent, start, data, test, epochs, warm_up, snapshots, bar, stop)
 
-    threads = torch.get_num_threads()
-    torch.set_num_threads(1)  # one core for each block: no waiting at every product
-    try:
+    with closing(bar):
         parts, interrupted = in_threads(work, blocks, WORKERS, stop)
-    finally:
-        torch.set_num_threads(threads)
-        bar.close()
     trained, histories, kept = zip(*parts)
     model = TorqueModel(Weights.concatenate(trained), data.inputs, data.outputs, data.step)
     history = _side_by_side(histories)
@@ -168,7 +164,6 @@ def _per_member(rate, momentum, epochs, members):
 
 def _train_block(descent, initial, data, test, epochs, warm_up, snapshots, bar, stop):
     """Train some members in this thread until `stop`; `bar` is told how far they are."""
-    torch.set_num_threads(1)
     history, points = History(), set(recorded_epochs(epochs))
     kept = {0: initial} if 0 in snapshots else {}
     spread = data.y.std(0)

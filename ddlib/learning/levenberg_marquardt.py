@@ -9,6 +9,7 @@ damping mu follows Nielsen (1999). Near the end all second derivatives take the 
 from __future__ import annotations
 
 import warnings
+from contextlib import closing
 from dataclasses import fields
 from threading import Event
 from typing import NamedTuple
@@ -128,19 +129,14 @@ def solve(
     def work(member: Weights):
         if stop.is_set():
             return member, _End(None, [(np.nan, np.nan)], np.nan, np.nan, "interrupted")
-        torch.set_num_threads(1)  # of this thread: one core for each member
         objective = Objective(member, data, decay, test, whiten)
         start = objective.pack(member)
         end = _descend(objective, start, steps, tolerance, target_rmss, tell, stop)
         tell(steps + 1 - len(end.path), end.path[-1][0])
         return objective.unpack(end.vector), end
 
-    threads = torch.get_num_threads()
-    try:
+    with closing(bar):
         parts, interrupted = in_threads(work, members, WORKERS, stop)
-    finally:
-        torch.set_num_threads(threads)
-        bar.close()
     solved, ends = zip(*parts)
     solution = Solution(
         TorqueModel(
