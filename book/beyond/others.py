@@ -42,10 +42,10 @@ class Characters:
             raise ValueError(
                 f"labels must be some of {', '.join(self.labels)}, got {sorted(labels)}"
             )
-        kept = np.isin(self.labels, list(labels))
-        rows = np.repeat(kept, self.length)
+        wanted = np.isin(self.labels, list(labels))
+        rows = np.repeat(wanted, self.length)
         chosen = {
-            f.name: getattr(self, f.name)[kept if f.name in ("labels", "length") else rows]
+            f.name: getattr(self, f.name)[wanted if f.name in ("labels", "length") else rows]
             for f in fields(self)
         }
         return replace(self, **chosen)

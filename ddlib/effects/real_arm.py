@@ -34,13 +34,13 @@ class Quantisation:
 
 @dataclass(frozen=True)
 class EncoderZero:
-    """A shift of the readings by `angle` (rad, ``(..., 2)``): where an encoder's zero lies."""
+    """A shift of the readings by `angle` (rad, ``(..., joint)``): where an encoder's zero lies."""
 
-    angle: tuple[float, float]
+    angle: tuple[float, ...]
 
     def apply(self, x, rng=None):
         """The reading `x`, shifted."""
-        return x + np.asarray(finite_array("angle", self.angle, 2))
+        return x + np.asarray(finite_array("angle", self.angle, np.shape(x)[-1]))
 
 
 @dataclass(frozen=True)

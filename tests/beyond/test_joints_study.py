@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from beyond.studies.loop.chain import chain, extents, moved
+from beyond.studies.loop.chain import REACH, SPACING, chain, extents, moved, recorded
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.simulation import LOG_STEP
@@ -41,3 +41,13 @@ def test_torque_is_the_books_with_friction():
     q, qd, qdd = np.moveaxis(states, -1, 0)
     wanted = CMU_DD_ARM_II.inverse_dynamics(q, qd, qdd) + JOINT_DAMPING.effects.friction_torque(qd)
     np.testing.assert_allclose(made.torque(states), wanted, atol=1e-10)
+
+
+@pytest.mark.parametrize("joints", (1, 3, 4, 7))
+def test_readings_of_any_number_of_joints_are_within_half_a_step_of_the_truth(joints):
+    """Each joint's encoder is rounded after a shift of its own, which is taken off again."""
+    arm = chain(joints)
+    sample = recorded(arm, extents(joints, 3, 0), 0)
+    assert sample.windows.shape[1:] == (joints, 2 * REACH // SPACING + 1)
+    off = np.abs(sample.windows[..., REACH // SPACING] - sample.states[..., 0])
+    assert 0.4 * arm.encoder < off.max() <= 0.5 * arm.encoder * (1 + 1e-9)

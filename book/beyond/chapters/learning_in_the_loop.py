@@ -129,8 +129,8 @@ def _first_figure() -> Illustration:
 
 def _course_figure() -> Illustration:
     """Errors on fixed members of the family, trial by trial, with a load from half-way on."""
-    kept = results.read("learning-in-the-loop")
-    x, number = np.arange(2 * kept["trials"] + 1), kept["trials"]
+    study = results.read("learning-in-the-loop")
+    x, number = np.arange(2 * study["trials"] + 1), study["trials"]
 
     def course(name):
         return x, np.array([*part("family")["tests"][name], part("family")["at the end"][name]])
@@ -150,7 +150,7 @@ def _course_figure() -> Illustration:
         f"end, from networks trained off-line: {later}."
     )
     labels = "trials practised", "end-point error, mm"
-    return _by_trial(panels, labels, alt, change=(number, f"{kept['load']:.0f} kg in the hand"))
+    return _by_trial(panels, labels, alt, change=(number, f"{study['load']:.0f} kg in the hand"))
 
 
 def _rates_figure() -> Illustration:
@@ -257,10 +257,10 @@ def on(
 
 def family(learner: str, when: str, setup: str = "joint damping") -> np.ndarray:
     """End-point errors on the family's test motions, one for each seed."""
-    kept, trials = part("family", setup), results.read("learning-in-the-loop")["trials"]
+    errors, trials = part("family", setup), results.read("learning-in-the-loop")["trials"]
     if when in ("at the end", "without the load again"):
-        return np.array(kept[when][learner])
-    return np.array(kept["tests"][learner])[trials if when == "with the load" else trials - 1]
+        return np.array(errors[when][learner])
+    return np.array(errors["tests"][learner])[trials if when == "with the load" else trials - 1]
 
 
 def _trials_to_half(errors, start) -> np.ndarray:
@@ -273,13 +273,13 @@ def _trials_to_half(errors, start) -> np.ndarray:
 def halved(learner: str, loaded: bool = False, setup: str = "joint damping") -> Measured:
     """Trials of the family to half the error of the feedback alone, or of the first loaded one."""
     number = results.read("learning-in-the-loop")["trials"]
-    kept = part("family", setup)
-    errors = np.array(kept["tests"][learner])
+    of_family = part("family", setup)
+    errors = np.array(of_family["tests"][learner])
     if loaded:
-        errors = np.concatenate([errors[number:], [kept["at the end"][learner]]])
+        errors = np.concatenate([errors[number:], [of_family["at the end"][learner]]])
         start = errors[0]
     else:
-        errors, start = errors[:number], np.array(kept["tests"][PLAIN])[0]
+        errors, start = errors[:number], np.array(of_family["tests"][PLAIN])[0]
     counts = _trials_to_half(errors, start)
     got = np.isfinite(counts).sum()
     text = f"{spread(counts)}, {got} of {counts.size} seeds" if got else "no seed"

@@ -51,28 +51,28 @@ def _memory() -> dict[str, np.ndarray]:
 
 def _remembered(x) -> np.ndarray:
     """Torque of ANYmal's network after each sample of histories, shape (cases, samples)."""
-    kept = _memory()
+    weights = _memory()
     h, c, torques = np.zeros((2, len(x), 8)), np.zeros((2, len(x), 8)), []
-    for z in np.moveaxis(x * kept["in_scale"], 1, 0):
+    for z in np.moveaxis(x * weights["in_scale"], 1, 0):
         for k in (0, 1):
-            s = z @ kept[f"lstm_weight_ih_l{k}"].T + kept[f"lstm_bias_ih_l{k}"]
-            s += h[k] @ kept[f"lstm_weight_hh_l{k}"].T + kept[f"lstm_bias_hh_l{k}"]
+            s = z @ weights[f"lstm_weight_ih_l{k}"].T + weights[f"lstm_bias_ih_l{k}"]
+            s += h[k] @ weights[f"lstm_weight_hh_l{k}"].T + weights[f"lstm_bias_hh_l{k}"]
             i, f, new, o = np.split(s, 4, axis=-1)
             c[k] = _squashed(f) * c[k] + _squashed(i) * np.tanh(new)
             z = h[k] = _squashed(o) * np.tanh(c[k])
-        torques.append(z @ kept["linear_weight"][0] + kept["linear_bias"][0])
-    return np.stack(torques, axis=1) * kept["out_scale"][0]
+        torques.append(z @ weights["linear_weight"][0] + weights["linear_bias"][0])
+    return np.stack(torques, axis=1) * weights["out_scale"][0]
 
 
 def _answers(size, frequency, speed=0.0, cases=100) -> np.ndarray:
     """Gradient of the last torque by age of error and velocity, shape (cases, 2, samples)."""
     error, velocity = _sines(size, frequency, 2 * _REACH, cases, speed)
     history = torch.tensor(np.stack([error, velocity], -1)[:, ::-1].copy(), requires_grad=True)
-    kept = {name: torch.tensor(value).double() for name, value in _memory().items()}
+    weights = {name: torch.tensor(value).double() for name, value in _memory().items()}
     lstm = torch.nn.LSTM(2, 8, 2, batch_first=True).double()
-    lstm.load_state_dict({name: kept[f"lstm_{name}"] for name in lstm.state_dict()})
-    output = lstm(history * kept["in_scale"])[0][:, -1]
-    torque = output @ kept["linear_weight"][0] * kept["out_scale"][0]
+    lstm.load_state_dict({name: weights[f"lstm_{name}"] for name in lstm.state_dict()})
+    output = lstm(history * weights["in_scale"])[0][:, -1]
+    torque = output @ weights["linear_weight"][0] * weights["out_scale"][0]
     (slopes,) = torch.autograd.grad(torque.sum(), history)
     return np.moveaxis(slopes.numpy()[:, ::-1][:, :_REACH], 1, 2)
 

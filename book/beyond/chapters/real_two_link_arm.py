@@ -174,9 +174,9 @@ def _window_figure() -> figures.Illustration:
 
     def draw(figure):
         left, right = figure.subplots(1, 2, sharey=True)
-        for k, (design, kept) in enumerate(_designs().items()):
-            sure = student.ppf(0.975, len(kept["runs"]) - 1) / _published(design)[3]
-            bars = sure * np.array(kept["identified"]["errors by length"])[:, 3]
+        for k, (design, entry) in enumerate(_designs().items()):
+            sure = student.ppf(0.975, len(entry["runs"]) - 1) / _published(design)[3]
+            bars = sure * np.array(entry["identified"]["errors by length"])[:, 3]
             y = _gravity(design, "measured")[:, 0]
             left.errorbar(x + 3 * k, y, bars, color=colours[k], elinewidth=0.7, label=design)
             estimates = _by(design, "instruments")[:, 0]

@@ -174,11 +174,14 @@ def _said() -> None:
     stated("stir-carries", resampled(known) < np.minimum(*others))
     stopped = claims.measured("stirring-hand-worse-stopped").replicates
     stated("stir-stopped-helps", stopped < 1)
-    kept = _stopped()
-    stated("stir-never-sixty", 60 not in kept["steps"])
-    chosen, at_sixty = (resampled(kept["hands"][pick][name]) for name in ("chosen", "60"))
+    stopped_early = _stopped()
+    stated("stir-never-sixty", 60 not in stopped_early["steps"])
+    chosen, at_sixty = (resampled(stopped_early["hands"][pick][name]) for name in ("chosen", "60"))
     stated("stir-stopped-loses-nothing", chosen < 1.1 * at_sixty)
-    sixty = resampled(kept["hands"][circles]["60"]) < kept["hands"][circles]["none"][0]
+    sixty = (
+        resampled(stopped_early["hands"][circles]["60"])
+        < stopped_early["hands"][circles]["none"][0]
+    )
     stated("stir-harm-later", sixty & (of_pick > hand("none")[0]))
     stated("stir-network-stays", draws(pick, circles) > 5 * draws(circles, circles))
     both = [draws("both", family) < 1.25 * draws(family, family) for family in _FAMILIES]

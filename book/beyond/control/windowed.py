@@ -113,24 +113,29 @@ class MeasuredWindows:
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
         """The law of one run: feedback, and the model's torque for measured windows."""
-        made = self.feedforward
-        made.check(step)
+        feedforward = self.feedforward
+        feedforward.check(step)
         feedback = as_controller(self.feedback).start(reference, step)
-        half, share = made.width // 2, np.asarray(self.share, float)[..., None, None]
-        taps = made.every * np.arange(-half, half + 1)
+        half, share = feedforward.width // 2, np.asarray(self.share, float)[..., None, None]
+        taps = feedforward.every * np.arange(-half, half + 1)
         last = reference.q.shape[-2] - 1
-        kept: list[np.ndarray] = []  # deviations, newest last; before the first sample none
+        deviations: list[np.ndarray] = []  # deviations, newest last; before the first sample none
 
         def law(k, q, qd):
-            kept.append(q - reference.q[..., k, :])
-            del kept[: -(made.every * half + 1)]
+            deviations.append(q - reference.q[..., k, :])
+            del deviations[: -(feedforward.every * half + 1)]
             windows = np.moveaxis(reference.q[..., np.clip(k + taps, 0, last), :], -1, -2)
-            past = [kept[t - 1] if -t < len(kept) else 0 * kept[-1] for t in taps[: half + 1]]
+            past = [
+                deviations[t - 1] if -t < len(deviations) else 0 * deviations[-1]
+                for t in taps[: half + 1]
+            ]
             past = share * np.stack(np.broadcast_arrays(*past), -1)
-            windows = np.broadcast_to(windows, (*past.shape[:-1], made.width)).copy()
+            windows = np.broadcast_to(windows, (*past.shape[:-1], feedforward.width)).copy()
             windows[..., : half + 1] += past
             cases = windows.reshape(-1, *windows.shape[-2:])
-            torque = shaped("model(windows)", made.model(cases), f"({len(cases)}, {q.shape[-1]})")
+            torque = shaped(
+                "model(windows)", feedforward.model(cases), f"({len(cases)}, {q.shape[-1]})"
+            )
             return torque.reshape(windows.shape[:-1]) + feedback(k, q, qd)
 
         return law

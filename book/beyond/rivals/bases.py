@@ -73,9 +73,9 @@ class _Solution(NamedTuple):
 
     def coefficients(self, ridge: float = 0.0) -> np.ndarray:
         """Least mean squared error plus `ridge` times squared coefficients; for 0 the shortest."""
-        kept = self.sizes > self.floor
-        factor = self.sizes[kept] / (self.sizes[kept] ** 2 + ridge)
-        return self.directions[kept].T @ (factor[:, None] * self.seen[kept])
+        large = self.sizes > self.floor
+        factor = self.sizes[large] / (self.sizes[large] ** 2 + ridge)
+        return self.directions[large].T @ (factor[:, None] * self.seen[large])
 
 
 class _Basis(Rival):
@@ -147,11 +147,11 @@ class Polynomial(_Basis):
         terms, joints = self.coefficients.shape
         variables = self.exponents.shape[1]
         double = self.kind_of == "chebyshev"  # T_k = 2 u T_(k-1) - T_(k-2)
-        made = variables * max(self.degree - 1, 0)
+        powers = variables * max(self.degree - 1, 0)
         joined = int((self.exponents > 0).sum(1).clip(min=1).sum()) - terms
         return Operations(
-            variables * (1 + double) + made + joined + terms * joints,
-            variables + double * made + terms * joints,
+            variables * (1 + double) + powers + joined + terms * joints,
+            variables + double * powers + terms * joints,
         )
 
 

@@ -36,11 +36,11 @@ class _Inputs:
             spread = flat.std(0)
             self.matrix = np.diag(1 / np.where(spread > 0, spread, 1.0))
         else:
-            kept = integer("directions", directions, 1, min(flat.shape))
+            number = integer("directions", directions, 1, min(flat.shape))
             _, size, basis = np.linalg.svd(flat - self.mean, full_matrices=False)
-            if not size[kept - 1] > 0:
-                raise ValueError(f"directions must be at most {(size > 0).sum()}, got {kept}")
-            self.matrix = basis[:kept].T * (np.sqrt(len(x)) / size[:kept])
+            if not size[number - 1] > 0:
+                raise ValueError(f"directions must be at most {(size > 0).sum()}, got {number}")
+            self.matrix = basis[:number].T * (np.sqrt(len(x)) / size[:number])
         self.diagonal = directions is None
 
     def __call__(self, x) -> np.ndarray:

@@ -100,8 +100,8 @@ def _variants(members: int) -> dict:
     for fold in data.folds():
         training, _ = fold
         x, y = data.x[training], data.current[training]
-        last, kept, _ = trained(x, y, members, 0, data.width, _COURSE, epochs=paper.EPOCHS)
-        for epoch, model in {**kept, paper.EPOCHS: last}.items():
+        last, snapshots, _ = trained(x, y, members, 0, data.width, _COURSE, epochs=paper.EPOCHS)
+        for epoch, model in {**snapshots, paper.EPOCHS: last}.items():
             put(f"{epoch} epochs", errors_of_fold(model, data, fold))
         for units in (1, 3, 20):
             model, *_ = trained(x, y, members, 0, data.width, hidden=units)
@@ -188,9 +188,9 @@ def _filters(width: int, members: int, draws: int) -> dict:
     data = Windowed.of(100, width)
     y = data.current
     same = np.repeat(y[None], members, 0)
-    model, _, made = trained(data.x, y, members, 0, width)
+    model, _, training_set = trained(data.x, y, members, 0, width)
     start = Weights.random(members, width, HIDDEN, 6, 6)
-    untrained = TorqueModel(start, made.inputs, made.outputs)
+    untrained = TorqueModel(start, training_set.inputs, training_set.outputs)
     structure = identified(data.states, y)
     known = structure.friction, structure.rest
     flat = data.flat
@@ -225,8 +225,8 @@ def _by_block() -> dict:
     data, fits = Windowed.of(*_MAIN), []
     states = data.states
     for training, _ in data.folds():
-        made = identified(states[training], data.current[training])
-        fits.append((made.inertia, made.slope, made.viscous, made.coulomb))
+        equations = identified(states[training], data.current[training])
+        fits.append((equations.inertia, equations.slope, equations.viscous, equations.coulomb))
     return dict(zip(("inertia", "slope", "viscous", "coulomb"), map(np.array, zip(*fits))))
 
 

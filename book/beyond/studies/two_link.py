@@ -86,8 +86,8 @@ PUBLISHED = {
 @cache
 def recorded_run(run: str, step: float = STEP) -> tuple[np.ndarray, np.ndarray]:
     """Positions (rad) and measured torques (N m), ``(samples, 2)`` each: means over `step` s."""
-    with np.load(BOOK / "data" / "double-pendulum.npz") as kept:
-        t, *columns = kept[run][:, :5].astype(float).T
+    with np.load(BOOK / "data" / "double-pendulum.npz") as by_run:
+        t, *columns = by_run[run][:, :5].astype(float).T
     many = round(1000 * step)  # milliseconds
     samples = int((t[-1] - t[0]) / step)
     fine = t[0] + 1e-3 * np.arange(samples * many)
@@ -217,8 +217,8 @@ def _rigid(runs, others, setting) -> list[float]:
 
 def _tuned(model, settings, runs, others) -> list[float]:
     """Errors on other runs; the setting has the least mean log error on runs left out of these."""
-    kept = [([r for r in runs if r != out], [out]) for out in runs]
-    wrong = [sum(np.log(model(few, out, s)[0]) for few, out in kept) for s in settings]
+    splits = [([r for r in runs if r != out], [out]) for out in runs]
+    wrong = [sum(np.log(model(few, out, s)[0]) for few, out in splits) for s in settings]
     return model(runs, others, settings[int(np.argmin(wrong))])
 
 
@@ -228,9 +228,9 @@ def _learnt(x, y, members, **targets) -> tuple[TorqueModel, np.ndarray, dict]:
     how = {"rate": 66 / width, "momentum": 0.98, "warm_up": 500, "epochs": _POINTS[-1]}
     targets = {k: data.outputs.scale(v) for k, v in targets.items()}
     start = Weights.random(members, width, paper.HIDDEN_UNITS, initial=START)
-    made = train_ensemble(start, data, snapshots=_POINTS, progress=False, **how, **targets)
-    model, history, kept = made
-    models = {e: TorqueModel(w, data.inputs, data.outputs, STEP) for e, w in kept.items()}
+    outcome = train_ensemble(start, data, snapshots=_POINTS, progress=False, **how, **targets)
+    model, history, weights = outcome
+    models = {e: TorqueModel(w, data.inputs, data.outputs, STEP) for e, w in weights.items()}
     return model, history.training[-1], models
 
 
@@ -380,8 +380,8 @@ def _two_link() -> dict:
     """What is identified, predicted and read, by design."""
     designs, tasks = {}, [(design, width) for design in RUNS for width in _WIDTHS]
     with joblib.parallel_config("loky", n_jobs=-1, inner_max_num_threads=1):
-        made = joblib.Parallel()(joblib.delayed(_read)(*task) for task in tasks)
-    readings = dict(zip(tasks, made))
+        outcomes = joblib.Parallel()(joblib.delayed(_read)(*task) for task in tasks)
+    readings = dict(zip(tasks, outcomes))
     for design, runs in RUNS.items():
         designs[design] = {
             "runs": runs,

@@ -120,11 +120,11 @@ def best_penalty(data: Windowed, training) -> float:
     """The penalty of `RIDGES` with the least error on pieces left out of the training cases."""
     x, total = data.flat, 0.0
     for piece in range(_PIECES):
-        kept, tried = _fold(len(x), piece, data.gap, _PIECES)
-        kept, tried = kept & training, tried & training
+        learnt, tried = _fold(len(x), piece, data.gap, _PIECES)
+        learnt, tried = learnt & training, tried & training
         if tried.any():
-            made = Ridge(x[kept], data.current[kept])
-            error = [made.predict(x[tried], p) - data.current[tried] for p in RIDGES]
+            ridge = Ridge(x[learnt], data.current[learnt])
+            error = [ridge.predict(x[tried], p) - data.current[tried] for p in RIDGES]
             total = total + (np.square(error) / data.current[training].var(0)).sum((1, 2))
     return RIDGES[int(np.argmin(total))]
 
@@ -192,11 +192,11 @@ def trained(x, y, members: int, seed: int, width: int, snapshots=(), targets=Non
     data = TrainingSet.from_arrays(x, y, scaling=_SCALING)
     start = Weights.random(members, width, hidden, x.shape[1], y.shape[1], seed=seed)
     scaled = None if targets is None else data.outputs.scale(targets)
-    model, _, kept = train_ensemble(
+    model, _, weights = train_ensemble(
         start, data, targets=scaled, rate=_DESCENT["rate"] / width, momentum=_DESCENT["momentum"],
         warm_up=_DESCENT["warm_up"], epochs=epochs, snapshots=snapshots, progress=False,
     )  # fmt: skip
-    models = {e: TorqueModel(w, data.inputs, data.outputs) for e, w in kept.items()}
+    models = {e: TorqueModel(w, data.inputs, data.outputs) for e, w in weights.items()}
     return model, models, data
 
 

@@ -99,10 +99,10 @@ def trained_copy(x, y, seed: int, longer: bool = False) -> tuple[list, float]:
         if longer:
             slower.step()
     arrays = [w.detach().double().numpy() for w in start]
-    made = [(w[:, :-1].copy(), w[:, -1].copy()) for w in arrays]
-    made[0] = made[0][0] / spread, made[0][1] - made[0][0] / spread @ middle
-    made[-1] = made[-1][0] * y.std(), made[-1][1] * y.std() + y.mean()
-    return made, float(np.sqrt(loss.detach()))
+    copy = [(w[:, :-1].copy(), w[:, -1].copy()) for w in arrays]
+    copy[0] = copy[0][0] / spread, copy[0][1] - copy[0][0] / spread @ middle
+    copy[-1] = copy[-1][0] * y.std(), copy[-1][1] * y.std() + y.mean()
+    return copy, float(np.sqrt(loss.detach()))
 
 
 @study

@@ -156,16 +156,16 @@ def _names(module: str, text: str) -> dict[str, list[ast.stmt] | tuple[str, str 
             names |= _imported(statement, module)
             continue
         if isinstance(statement, (ast.FunctionDef, ast.ClassDef)):
-            made = [statement.name]
+            names_made = [statement.name]
         elif _only_tells(statement):
             continue
         else:  # an assignment, or a call that changes what has been made before
             used = [n.id for n in ast.walk(statement) if isinstance(n, ast.Name)]
-            made = _stored(statement, _SCOPES)
-            if not made or hasattr(statement, "body"):
+            names_made = _stored(statement, _SCOPES)
+            if not names_made or hasattr(statement, "body"):
                 changed = [n for n in used if n in names and not _is_imported(names[n])]
-                made = list(dict.fromkeys([*made, *changed]))
-        for name in made:
+                names_made = list(dict.fromkeys([*names_made, *changed]))
+        for name in names_made:
             earlier = names.get(name)
             names[name] = [*(earlier if isinstance(earlier, list) else []), statement]
     return names

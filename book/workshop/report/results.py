@@ -128,5 +128,5 @@ def _digest(folder: Path) -> str:
 
 def _committed() -> bool:
     """Whether these are the committed results, for which ``verdicts.json`` was written."""
-    kept = (FOLDER / "verdicts.json").is_file()
-    return kept and read("verdicts")["of results"] == _digest(FOLDER)
+    is_there = (FOLDER / "verdicts.json").is_file()
+    return is_there and read("verdicts")["of results"] == _digest(FOLDER)

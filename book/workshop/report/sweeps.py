@@ -33,8 +33,8 @@ def _sweep(
     """
     one_of("backend", backend, _BACKENDS)
     settings = list(settings)
-    kept = joblib.Memory(Path(folder, code), verbose=0).cache(experiment)
-    tasks = (joblib.delayed(kept)(**setting) for setting in settings)
+    cached = joblib.Memory(Path(folder, code), verbose=0).cache(experiment)
+    tasks = (joblib.delayed(cached)(**setting) for setting in settings)
     threads = {"inner_max_num_threads": 1} if backend == "loky" else {}
     with joblib.parallel_config(backend, n_jobs=jobs, **threads):
         results = joblib.Parallel(return_as="generator", batch_size=1)(tasks)

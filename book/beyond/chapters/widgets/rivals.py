@@ -37,8 +37,8 @@ class RivalPicker(CurveWidget):
         rival: str = "linear filter",
         **options,
     ):
-        with np.load(path) as kept:
-            names, torque = kept["names"].tolist(), kept["torque"].astype(float)
+        with np.load(path) as arrays:
+            names, torque = arrays["names"].tolist(), arrays["torque"].astype(float)
         self._torque = dict(zip(names, torque))
         self._reference = results.read("rivals")["reference"]
         self._side = round(torque.shape[1] ** 0.5)  # trajectories in a row of the square

@@ -59,11 +59,11 @@ class StirringPicker(CurveWidget):
     workspace.tag(sync=True)
 
     def __init__(self, path: Path = results.FOLDER / "stirring-picker.npz", **options):
-        with np.load(path) as kept:
-            names = kept["names"].tolist()
-            self._hand = dict(zip(names, kept["hand"].astype(float)))
-            self._torque = dict(zip(names[1:], kept["torque"].astype(float)))
-            self._reached = kept["reached"]
+        with np.load(path) as arrays:
+            names = arrays["names"].tolist()
+            self._hand = dict(zip(names, arrays["hand"].astype(float)))
+            self._torque = dict(zip(names[1:], arrays["torque"].astype(float)))
+            self._reached = arrays["reached"]
         times = np.arange(round(MOTION_SECONDS / LOG_STEP / SHOWN)) * LOG_STEP * SHOWN
         self._times = times
         seconds = "time, s"

@@ -27,8 +27,8 @@ _INSIDE = slice(40, -40)  # samples that count
 
 def _commanded(run: str) -> np.ndarray:
     """Commanded torques (N m), ``(samples, 2)``, on the grid of `two_link.recorded_run`."""
-    with np.load(BOOK / "data" / "double-pendulum.npz") as kept:
-        t, *columns = kept[run][:, [0, 5, 6]].astype(float).T
+    with np.load(BOOK / "data" / "double-pendulum.npz") as by_run:
+        t, *columns = by_run[run][:, [0, 5, 6]].astype(float).T
     fine = t[0] + 1e-3 * np.arange(int((t[-1] - t[0]) / arm.STEP) * 10)
     return np.stack([np.interp(fine, t, x).reshape(-1, 10).mean(1) for x in columns], -1)
 
@@ -55,11 +55,11 @@ def _by_instruments(runs, width) -> np.ndarray:
     parameters = np.linalg.lstsq(a, y)[0]
     smooth = [arm.fitted_states(q, _SMOOTH) for q, _ in recordings]
     for _ in range(_ROUNDS):
-        made = [
+        simulated = [
             np.concatenate([s[..., :2], _caused(parameters, s, _commanded(run))[..., None]], -1)
             for run, s in zip(runs, smooth)
         ]
-        z = _joined([arm.regressor(s) for s in made])
+        z = _joined([arm.regressor(s) for s in simulated])
         z = (z / spread[:, None]).reshape(torque.size, -1)
         parameters = np.linalg.solve(z.T @ a, z.T @ y)
     return parameters
@@ -104,8 +104,8 @@ def _two_link_instruments() -> dict:
     ]
     with joblib.parallel_config("loky", n_jobs=-1, inner_max_num_threads=1):
         run = joblib.delayed(lambda d, way, how: _sure(arm.RUNS[d], way, *how))
-        made = joblib.Parallel()(run(design, way, how) for design, _, way, how in jobs)
+        estimates = joblib.Parallel()(run(design, way, how) for design, _, way, how in jobs)
     designs = {design: {name: [] for name in tasks} for design in arm.RUNS}
-    for (design, name, *_), parameters in zip(jobs, made):
+    for (design, name, *_), parameters in zip(jobs, estimates):
         designs[design][name].append(parameters)
     return {"lengths": arm.LENGTHS, "cutoffs": _CUTOFFS, "designs": designs}

@@ -67,33 +67,33 @@ def _errors(predict, parts, width) -> dict[str, float]:
 def _fitted(parts, width, pull=None, learn=_FILTERS) -> tuple[FilteredEquations, dict]:
     """The equations with learnt filters, and their errors."""
     training = parts["training"][0]
-    made = FilteredEquations(PARAMETER_NAMES, width, training.step, pull, learn).fit(training)
-    return made, _errors(made.predict, parts, width)
+    equations = FilteredEquations(PARAMETER_NAMES, width, training.step, pull, learn).fit(training)
+    return equations, _errors(equations.predict, parts, width)
 
 
 def _day(day: int) -> dict:
     """All of one day of the simulated arm."""
     parts, result = recorded_parts(day), {"errors": {}, "found": {}}
     for width in _WIDTHS:
-        made, result["errors"][str(width)] = _fitted(parts, width)
+        equations, result["errors"][str(width)] = _fitted(parts, width)
         fixed, result["errors"][f"{width}, none learnt"] = _fitted(parts, width, 1.0, ())
         true = true_parameters(JOINT_DAMPING.arm, JOINT_DAMPING.effects, PARAMETER_NAMES)
         result["found"][str(width)] = {
-            "pull": made.pull,
-            "filters": made.filters,
-            "errors of filters": made.filter_errors,
-            "parameters": made.estimate.values,
+            "pull": equations.pull,
+            "filters": equations.filters,
+            "errors of filters": equations.filter_errors,
+            "parameters": equations.estimate.values,
             "fixed": fixed.estimate.values,
-            "covered": replace(made.estimate, unsure=None).covers(true),
+            "covered": replace(equations.estimate, unsure=None).covers(true),
         }
         if width == WINDOW:
             for number in (1, 2):
                 for learn in combinations(_FILTERS, number):
                     name = " and ".join(learn)
-                    result["errors"][name] = _fitted(parts, width, made.pull, learn)[1]
+                    result["errors"][name] = _fitted(parts, width, equations.pull, learn)[1]
     others = {name: (_other_encoder(r, day), every) for name, (r, every) in parts.items()}
-    made, result["errors"]["other encoder"] = _fitted(others, WINDOW)
-    result["found"]["other encoder"] = {"filters": made.filters}
+    equations, result["errors"]["other encoder"] = _fitted(others, WINDOW)
+    result["found"]["other encoder"] = {"filters": equations.filters}
     result["errors"]["other encoder, none learnt"] = _fitted(others, WINDOW, 1.0, ())[1]
     linear = Linear().fit(Cases.windows(others["training"][0], WINDOW))
     result["errors"]["other encoder, linear filter"] = _errors(linear._torque, others, WINDOW)
@@ -119,14 +119,14 @@ def _real(rate: int, width: int, block: int) -> dict:
     data = Windowed.of(rate, width)
     training, test = data.fold(block)
     x, current, states = data.x, data.current, data.states
-    made = FilteredEquations(joint_terms, width, data.step, _CARRIED)
-    made.fit([x[training]], [current[training]])
+    equations = FilteredEquations(joint_terms, width, data.step, _CARRIED)
+    equations.fit([x[training]], [current[training]])
     known = known_structure(states[training], current[training], states[test])
     return {
         "equations": wrong(known, data, test).mean(),
-        "learnt": wrong(made.predict(x[test]), data, test).mean(),
-        "training": wrong(made.predict(x[training]), data, training).mean(),
-        "filters": made.filters,
+        "learnt": wrong(equations.predict(x[test]), data, test).mean(),
+        "training": wrong(equations.predict(x[training]), data, training).mean(),
+        "filters": equations.filters,
     }
 
 

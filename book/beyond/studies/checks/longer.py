@@ -31,8 +31,8 @@ def _descended(runs, width=41) -> list[np.ndarray]:
     x, start = arm.all_runs(runs, width), Weights.random(_DESCENTS, width, 10, initial=arm.START)
     data = TrainingSet.from_arrays(x, arm.all_runs(runs, "torque"), scaling=(-1, 1))
     how = {"rate": 66 / width, "momentum": 0.98, "warm_up": 500, "epochs": _EPOCHS[-1]}
-    *_, kept = train_ensemble(start, data, snapshots=_EPOCHS, progress=False, **how)
-    models = [TorqueModel(kept[e], data.inputs, data.outputs, arm.STEP) for e in _EPOCHS]
+    *_, weights = train_ensemble(start, data, snapshots=_EPOCHS, progress=False, **how)
+    models = [TorqueModel(weights[e], data.inputs, data.outputs, arm.STEP) for e in _EPOCHS]
     return [gains(mean_gradient(model, x), arm.STEP) for model in models]
 
 

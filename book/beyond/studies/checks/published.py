@@ -94,9 +94,9 @@ def _characters_published() -> dict:
     result: dict = {"published": {"count": stored, "loader": lagrangian}, "plain": {}}
     for split, labels in SPLITS.items():
         training, test = data().split(labels)
-        made = [_plain(states(training), seed) for seed in range(SEEDS)]
+        networks = [_plain(states(training), seed) for seed in range(SEEDS)]
         result["plain"] |= {
-            split: [tested(torque, test) for torque, _ in made],
-            "count": made[0][1],
+            split: [tested(torque, test) for torque, _ in networks],
+            "count": networks[0][1],
         }
     return result

@@ -79,8 +79,8 @@ def _smoothed(states_of, names, recording: Recording, delay: int = 0) -> _Kept:
 
 
 def _learnt(width, pull, names, recording: Recording) -> _Kept:
-    made = FilteredEquations(names, width, LOG_STEP, pull).fit(recording)
-    return _Kept(made.predict, made.estimate.values)
+    equations = FilteredEquations(names, width, LOG_STEP, pull).fit(recording)
+    return _Kept(equations.predict, equations.estimate.values)
 
 
 def _butterworth(cutoff, delay=0):
@@ -147,8 +147,8 @@ def _left_out(way, names, training: Recording) -> float:
     """As `tuned` judges a setting."""
     each = []
     for out in range(_RUNS):
-        kept = way(names, training[[k for k in range(_RUNS) if k != out]])
-        each.append(_wrong(kept, training[out]))
+        fitted = way(names, training[[k for k in range(_RUNS) if k != out]])
+        each.append(_wrong(fitted, training[out]))
     return float(np.sqrt(np.mean(np.square(each))))
 
 
@@ -165,12 +165,12 @@ def _job(arm: str, day: int) -> dict:
     for name, settings in (_WAYS | _MORE.get(arm, {})).items():
         lost = {s: _left_out(way, names, training) for s, way in settings.items()}
         best = min(lost, key=lost.get)
-        kept = settings[best](names, training)
+        fitted = settings[best](names, training)
         result[name] = {
             "setting": best,
-            "errors": {part: _wrong(kept, *at) for part, at in parts.items()},
-            "applied": {part: _wrong(kept, *at, logged=False) for part, at in parts.items()},
-            "off": kept.values / true - 1,
+            "errors": {part: _wrong(fitted, *at) for part, at in parts.items()},
+            "applied": {part: _wrong(fitted, *at, logged=False) for part, at in parts.items()},
+            "off": fitted.values / true - 1,
         }
     return result
 
@@ -180,10 +180,10 @@ def _smoothers() -> dict:
     """Settings, errors and parameters of each way, by arm and day."""
     jobs = [(arm, day) for arm, (*_, days) in _ARMS.items() for day in range(1, days + 1)]
     with joblib.parallel_config("loky", n_jobs=-1, inner_max_num_threads=1):
-        made = dict(zip(jobs, joblib.Parallel()(joblib.delayed(_job)(*job) for job in jobs)))
+        results = dict(zip(jobs, joblib.Parallel()(joblib.delayed(_job)(*job) for job in jobs)))
     arms = {}
     for arm, (_, names, days) in _ARMS.items():
-        each = [made[arm, day] for day in range(1, days + 1)]
+        each = [results[arm, day] for day in range(1, days + 1)]
         arms[arm] = {"names": names, "ways": {}}
         for way in each[0]:
             rows = [day[way] for day in each]

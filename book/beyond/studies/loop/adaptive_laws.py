@@ -113,10 +113,10 @@ def make(law: str, setup: Setup, start=None, factor=1.0, *, jumps=False, **optio
     missing = np.zeros((*start.shape[:-1], len(names) - start.shape[-1]))
     first = np.concatenate([start, missing], -1)
     if law == "measured acceleration":
-        made = CraigHsuSastry(a0, a1, a1 / 2, rate, first, *_BOX, names, **options)
+        controller = CraigHsuSastry(a0, a1, a1 / 2, rate, first, *_BOX, names, **options)
     else:
-        made = SlotineLi(KD, slope, rate, first, names, **options)
-    return made if jumps else BehindModel(replace(made, limit=LIMITS), SMOOTH)
+        controller = SlotineLi(KD, slope, rate, first, names, **options)
+    return controller if jumps else BehindModel(replace(controller, limit=LIMITS), SMOOTH)
 
 
 def fixed_laws(setup: Setup) -> dict[str, Controller]:

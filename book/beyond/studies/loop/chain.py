@@ -95,7 +95,7 @@ def chain(joints: int, reading: str = JOINT_DAMPING.name) -> Chain:
     coulomb = np.append(coulomb, coulomb[1] * share)
     lead = kd / (kd + viscous[:2])
     (noise,) = setup.effects.torque_sensor
-    made = Chain(
+    result = Chain(
         locked(DD_ARM_II_IN_SPACE, joints),
         frequency[:joints],
         np.append(damping, [damping[1]] * 5)[:joints],
@@ -106,9 +106,9 @@ def chain(joints: int, reading: str = JOINT_DAMPING.name) -> Chain:
         encoder.step,
         np.append(noise.std, np.zeros(5))[:joints],
     )
-    tau = made.torque(moved(made, extents(joints, 64, 0))[:, ::5])
-    made.noise[2:] = _NOISE * tau.std((0, 1))[2:]
-    return made
+    tau = result.torque(moved(result, extents(joints, 64, 0))[:, ::5])
+    result.noise[2:] = _NOISE * tau.std((0, 1))[2:]
+    return result
 
 
 def extents(joints: int, motions: int, seed: int) -> np.ndarray:

@@ -49,8 +49,8 @@ def _copies(setup: Setup, days) -> dict:
         f"{s:g}": equations(*run_time.rounded(run_time.FEWER_EXTENTS, s))[None] for s in _COPIES
     }
     torques["network"] = run_time.torques_along(run_time.networks(setup, len(days)), plan)
-    made = {name: (torque, days) for name, torque in torques.items()}
-    return run_time.median_errors(setup, made, plan)
+    lines = {name: (torque, days) for name, torque in torques.items()}
+    return run_time.median_errors(setup, lines, plan)
 
 
 def _cases(run, every: int) -> Cases:
@@ -118,14 +118,14 @@ def _hands(setup: Setup, models: dict, reference: Trajectory) -> dict:
 
 def _windows(seeds: int) -> dict:
     """Errors with four joints: fewer windows of twenty motions, and five with chosen training."""
-    made = chain(4)
-    test, errors = joints.tested(made), {"300 of twenty": [], "750 of twenty": [], "chosen": []}
+    arm = chain(4)
+    test, errors = joints.tested(arm), {"300 of twenty": [], "750 of twenty": [], "chosen": []}
     errors["as it is"] = []
     for seed in range(_LATER, _LATER + seeds):
         for number in (300, 750):
-            part = recorded(made, extents(4, 20, seed), seed).thinned(number)
+            part = recorded(arm, extents(4, 20, seed), seed).thinned(number)
             errors[f"{number} of twenty"].append(_error(part, test, seed))
-        five = recorded(made, extents(4, 5, seed), seed).thinned(joints.TRAINING_CASES)
+        five = recorded(arm, extents(4, 5, seed), seed).thinned(joints.TRAINING_CASES)
         errors["as it is"].append(_error(five, test, seed))
         decay, steps = chosen_decay(five, seed)
         errors["chosen"].append(_error(five, test, seed, decay=decay, steps=steps))

@@ -124,13 +124,13 @@ def _by_motions(reading: str, ladder: dict, seeds: int) -> list[dict]:
     """Errors of networks and of a linear filter, by joints and their numbers of motions."""
     rows = []
     for joints, motions in ladder.items():
-        made = arms.chain(joints, reading)
-        test = tested(made)
+        arm = arms.chain(joints, reading)
+        test = tested(arm)
         for count_of in motions:
             row = {"joints": joints, "motions": count_of}
             row |= {"training": [], "test": [], "by joint": [], "linear": []}
             for seed in range(1, 1 + seeds):
-                training = sets(made, count_of, seed)
+                training = sets(arm, count_of, seed)
                 solution = solved(*training.pair, test.pair, seed=seed)
                 answer = solution.model[0].torque(test.windows)
                 row["training"].append(float(solution.history.training[-1, 0]))
@@ -145,10 +145,10 @@ def _known_structure(joints=(1, 2, 3, 4, 5, 7), motions=(5, 20), seeds=SEEDS) ->
     """Errors of the identified equations, by joints and motions, one for each of the seeds."""
     rows = []
     for n in joints:
-        made = arms.chain(n)
-        test = tested(made)
+        arm = arms.chain(n)
+        test = tested(arm)
         for m in motions:
-            each = [_identified(made, sets(made, m, s), test) for s in range(1, 1 + seeds)]
+            each = [_identified(arm, sets(arm, m, s), test) for s in range(1, 1 + seeds)]
             training, errors = zip(*each)
             rows.append({"joints": n, "motions": m, "training": training, "test": errors})
     return rows
@@ -158,7 +158,7 @@ def _closed_loops(seeds: int = SEEDS) -> list[dict]:
     """Two joints: recordings of closed loops beside motions followed exactly, both readings."""
     rows = []
     for setup, motions in product((JOINT_DAMPING, STATE_FEEDBACK), (5, _MAIN)):
-        made = arms.chain(2, setup.name)
+        arm = arms.chain(2, setup.name)
         drawn = [arms.extents(2, motions, seed) for seed in range(1, 1 + seeds)]
         loop = setup.record(np.vstack([arms.extents(2, TEST_MOTIONS, TEST_SEED), *drawn]))
         plan = [(arms.SPACING, kind) for kind in ("closed loop", *arms.MOTIONS)]
@@ -169,8 +169,8 @@ def _closed_loops(seeds: int = SEEDS) -> list[dict]:
                 test, *trained = _cut(loop, spacing, motions)
             else:
                 options = {"motion": kind, "spacing": spacing}
-                test = tested(made, **options)
-                trained = [sets(made, motions, s, **options) for s in range(1, 1 + seeds)]
+                test = tested(arm, **options)
+                trained = [sets(arm, motions, s, **options) for s in range(1, 1 + seeds)]
             rows.append(
                 {
                     "reading": setup.name,
@@ -190,24 +190,24 @@ def _cut(loop, spacing: int, motions: int) -> list[arms.Sample]:
     taps = centres[:, None] + np.arange(-arms.REACH, arms.REACH + 1, spacing)
     windows, torque = np.moveaxis(loop.q[:, taps], -1, -2), loop.tau[:, centres]
     ends = [0, *range(TEST_MOTIONS, len(windows) + 1, motions)]
-    made = []
+    samples = []
     for first, last in pairwise(ends):
         x, y = windows[first:last], torque[first:last]
         flat = x.reshape(-1, *x.shape[2:]), y.reshape(-1, 2)
-        made.append(
+        samples.append(
             arms.Sample(*flat, np.zeros((len(flat[1]), 0)), last - first).thinned(TRAINING_CASES)
         )
-    return made
+    return samples
 
 
 def _units() -> list[dict]:
     """Four joints with other numbers of hidden units."""
-    made = arms.chain(4)
-    test = tested(made)
+    arm = arms.chain(4)
+    test = tested(arm)
     rows = []
     for hidden in _UNITS:
         for motions in (5, _MAIN) if hidden < 40 else (_MAIN,):
-            trained = [sets(made, motions, seed).pair for seed in range(1, 1 + SEEDS)]
+            trained = [sets(arm, motions, seed).pair for seed in range(1, 1 + SEEDS)]
             row = {"units": hidden, "motions": motions}
             rows.append(row | _trained(trained, test.pair, hidden))
     return rows
@@ -236,13 +236,13 @@ def _random_states() -> list[dict]:
 
 def _pairs(joints: int = 4, seeds: int = SEEDS) -> dict:
     """Which joints' windows each torque uses: gains on acceleration beside the arm's inertia."""
-    made = arms.chain(joints)
-    test = tested(made)
-    inertia = mass_matrix(made.arm, test.states[..., 0]).mean(0)
+    arm = arms.chain(joints)
+    test = tested(arm)
+    inertia = mass_matrix(arm.arm, test.states[..., 0]).mean(0)
     by_kind: dict = {"real": [], "unrelated": []}
     used: dict = {"real": [], "unrelated": []}
     for seed in range(1, 1 + seeds):
-        whole = arms.recorded(made, arms.extents(joints, _MAIN, seed), seed)
+        whole = arms.recorded(arm, arms.extents(joints, _MAIN, seed), seed)
         runs = whole.torque.reshape(_MAIN, -1, joints)
         torques = {"real": runs, "unrelated": surrogate("phases", runs, seed)}
         step = -(-len(whole.torque) // TRAINING_CASES)
@@ -257,7 +257,7 @@ def _pairs(joints: int = 4, seeds: int = SEEDS) -> dict:
         "inertia": inertia,
         "gains": by_kind,
         "used": used,
-        "exact": _shuffled(made.torque, test.states, test.torque.std(0), 1),
+        "exact": _shuffled(arm.torque, test.states, test.torque.std(0), 1),
         "deviation": test.torque.std(0),
         "acceleration": test.states[..., 2].std(0),
     }
@@ -278,13 +278,13 @@ def _interactions() -> dict:
     """How much of each torque is owed to the other joints: RMS without them, over the deviation."""
     shares = {}
     for joints in (2, 3, 4, 5, 7):
-        made = arms.chain(joints)
-        states = tested(made).states
-        whole, alone = made.torque(states), np.zeros(states.shape[:2])
+        arm = arms.chain(joints)
+        states = tested(arm).states
+        whole, alone = arm.torque(states), np.zeros(states.shape[:2])
         for j in range(joints):
             only = np.zeros_like(states)
             only[:, j] = states[:, j]
-            alone[:, j] = made.torque(only)[:, j]
+            alone[:, j] = arm.torque(only)[:, j]
         left = whole - alone
         shares[str(joints)] = (left - left.mean(0)).std(0) / whole.std(0)
     return shares

@@ -108,7 +108,7 @@ def _square(setup: Setup, reference: Trajectory) -> tuple[dict, dict]:
 
 def _rivals(setup: Setup, reference: Trajectory) -> dict:
     """Rivals of windows as feedforwards, with their error on trajectory 6."""
-    made: dict = {name: ([], []) for name in _RIVALS}
+    by_rival: dict = {name: ([], []) for name in _RIVALS}
     days = range(1, 1 + _FEW)
     for day in days:
         training, six = (
@@ -119,13 +119,13 @@ def _rivals(setup: Setup, reference: Trajectory) -> dict:
             feedforward = WindowFeedforward(
                 rival.torque, parts.WIDTH, between="line", step=LOG_STEP
             )
-            torques, scores = made[name]
+            torques, scores = by_rival[name]
             scores.append(rmss(rival.torque(six.x), six.torque))
             # run by run: a process keeps a product of all windows with all it has learnt
             runs = (Trajectory(*(x[k] for x in reference)) for k in range(len(reference.q)))
             torques.append(np.stack([feedforward(*run) for run in runs]))
     rows = {}
-    for name, (torques, scores) in made.items():
+    for name, (torques, scores) in by_rival.items():
         log = parts.drive(setup, parts.given(np.stack(torques), setup.controller), reference, days)
         rows[name] = {**parts.median_scores(parts.score(setup.arm, log)), "RMSS": scores}
     return rows
@@ -309,7 +309,7 @@ def _run_time() -> dict:
     result["readings"] = {}
     fewer = parts.rounded(parts.FEWER_EXTENTS, 0.0)
     for setup in _READINGS:
-        made = _made(_few(setup), fewer)
+        lines = _made(_few(setup), fewer)
         rows, torques = _square(setup, reference)
         with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):
             rows |= _rivals(setup, reference)
@@ -318,8 +318,8 @@ def _run_time() -> dict:
             "course": _course(setup),
             "corner": _corner(setup),
             "rates": _rates(setup, fewer),
-            "changed": _changed(setup, made, fewer),
-            "gains": _gains(setup, made, fewer),
+            "changed": _changed(setup, lines, fewer),
+            "gains": _gains(setup, lines, fewer),
             "scatter": _scatter(setup, rows, torques, reference),
             "bound": _bound(setup, torques[f"network, window {parts.WIDTH}"], reference),
             "inside": _inside(setup),

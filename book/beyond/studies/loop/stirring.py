@@ -207,13 +207,13 @@ def network_path(family: str):
 
 def _keep(setup: Setup, rivals: dict, table: dict) -> dict[str, TorqueModel]:
     """Save, of each family, the network with the median error on its own test."""
-    kept = {}
+    models = {}
     for family in motions.FAMILIES[:3]:
         part = family if family != "both" else "circles"
         order = np.argsort([error[0] for error in table["network"][family][part]])
-        kept[family] = rivals["network", family][order[len(order) // 2]].model
-        kept[family].save(network_path(family))
-    return kept
+        models[family] = rivals["network", family][order[len(order) // 2]].model
+        models[family].save(network_path(family))
+    return models
 
 
 def _picker(setup: Setup, kept: dict[str, TorqueModel], places=None) -> None:

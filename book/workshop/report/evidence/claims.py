@@ -315,9 +315,9 @@ class Printed(float):
     """A number that keeps the digits it is printed with."""
 
     def __new__(cls, text: str):
-        made = super().__new__(cls, text)
-        made.text = text
-        return made
+        number = super().__new__(cls, text)
+        number.text = text
+        return number
 
     def __getnewargs__(self):
         return (self.text,)

@@ -117,8 +117,8 @@ def _main(arguments=None) -> int:
         print(_line(claim), flush=True)
     if options.write:
         path = results.FOLDER / f"{_NAME}.json"
-        kept = results.read(_NAME).get("claims", {}) if path.is_file() else {}
-        changes = _changes(measured, kept)
+        before = results.read(_NAME).get("claims", {}) if path.is_file() else {}
+        changes = _changes(measured, before)
         heading = f"changed against what was kept: {len(changes)} of {len(measured)}"
         print(heading, *changes, sep="\n")
         now = {claim.id: _entry(claim) for claim in measured}

@@ -52,11 +52,11 @@ def arm_gains(setup: str = JOINT_DAMPING.name) -> np.ndarray:
     No stiffness; the slope of the friction torque with the velocity, by least squares over the
     training cases; the mean mass matrix. Coulomb friction adds to the slope.
     """
-    made = SETUPS[setup]
-    states = true_states(committed.training(setup), made).reshape(-1, 2, 3)
+    reading = SETUPS[setup]
+    states = true_states(committed.training(setup), reading).reshape(-1, 2, 3)
     speed = states[..., 1]
-    slope = np.linalg.lstsq(speed, made.effects.friction_torque(speed), rcond=None)[0].T
-    inertia = made.arm.mass_matrix(states[..., 0]).mean(0)
+    slope = np.linalg.lstsq(speed, reading.effects.friction_torque(speed), rcond=None)[0].T
+    inertia = reading.arm.mass_matrix(states[..., 0]).mean(0)
     return np.stack([np.zeros((2, 2)), slope, inertia], -1)
 
 
@@ -92,8 +92,8 @@ def response(width: int = 21) -> Measured:
 
     At the shoulder, along the worst of three trajectories; see the study `filter_responses`.
     """
-    kept = results.read("filter-responses")
-    numbers, (cell, own) = kept["trajectories"], responses(width)
+    study = results.read("filter-responses")
+    numbers, (cell, own) = study["trajectories"], responses(width)
     pairs = list(zip(numbers, np.median(cell["network"], 0), own))
     text = ", ".join(f"{one:.1f} on trajectory {k} (arm {arm:.1f})" for k, one, arm in pairs)
     filters = ", ".join(f"{one:.1f}" for one in np.median(cell["filter"], 0))
@@ -106,9 +106,9 @@ def responses(width: int = 21, motion: str = "slow") -> tuple[dict, np.ndarray]:
 
     Along the motion as it was "recorded", swings included, or a "slow" sine as it was desired.
     """
-    kept = results.read("filter-responses")[motion]
-    cell = {way: np.array(each) for way, each in kept["windows"][str(width)].items()}
-    return cell, np.array(kept["arm"])
+    study = results.read("filter-responses")[motion]
+    cell = {way: np.array(each) for way, each in study["windows"][str(width)].items()}
+    return cell, np.array(study["arm"])
 
 
 def _entries(what, gains, wanted) -> tuple[np.ndarray, np.ndarray, str]:

@@ -277,9 +277,9 @@ def noise_left(width: int = 41) -> Measured:
     """Correlation of trained with initial weights in directions predicted not to be learnt."""
     cell = _learning(width, 0)
     learnt, every = int(np.median(cell["predicted"]["learnt"])), len(cell["variance"])
-    kept = np.array(cell["start kept"])
-    text = f"{spread(kept)} in {every - learnt} of {every} directions"
-    return judged(median, kept, text=text)
+    correlation = np.array(cell["start kept"])
+    text = f"{spread(correlation)} in {every - learnt} of {every} directions"
+    return judged(median, correlation, text=text)
 
 
 def memorised(width: int = 41, days: int = 5, setup: str = STATE_FEEDBACK.name) -> Measured:

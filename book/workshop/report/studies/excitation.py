@@ -72,11 +72,11 @@ def _networks(recording: Recording, members: int, label: str) -> dict:
     training, data = split(recording)[0], training_set(recording)
     start = Weights.random(members, _WIDTH, initial=TRIAL.initial)
     shared = {"momentum": TRIAL.momentum, "warm_up": TRIAL.warm_up}
-    *_, kept = learning.train_ensemble(
+    *_, weights = learning.train_ensemble(
         start, data, rate=TRIAL.rate / _WIDTH, epochs=_EPOCHS[-1], snapshots=_EPOCHS,
         label=label, **shared,
     )  # fmt: skip
-    by_epoch = [_read(kept[epoch], data, training) for epoch in _EPOCHS]
+    by_epoch = [_read(weights[epoch], data, training) for epoch in _EPOCHS]
     solved = learning.solve(
         start, data, steps=JOINT_DAMPING.steps, decay=JOINT_DAMPING.decay, label=label
     )

@@ -190,7 +190,7 @@ def _mean(found, draws: int):
 
 def _nulls(trial: FilterTrial, kinds, draws: int, each: int) -> tuple[dict, dict]:
     """Networks of each kind of surrogate, `each` for a draw: means by draw, and the weights."""
-    by_kind, kept = {}, {}
+    by_kind, networks = {}, {}
     for number, kind in enumerate(kinds):
         drawn = surrogates(kind, trial.torques, draws, seed=100 * number)
         targets = np.repeat(drawn, each, 0)
@@ -199,8 +199,8 @@ def _nulls(trial: FilterTrial, kinds, draws: int, each: int) -> tuple[dict, dict
         by_kind[kind]["related"] = np.array(
             [related(d.reshape(-1, 2), trial.windows) for d in drawn]
         )
-        kept[kind] = weights[::each]
-    return by_kind, kept
+        networks[kind] = weights[::each]
+    return by_kind, networks
 
 
 def _row(setup: Setup, recording: Recording, width: int, members: int, draws: int, each: int,
@@ -214,12 +214,12 @@ def _row(setup: Setup, recording: Recording, width: int, members: int, draws: in
         "real, errors": trial.errors(trial.model(weights)),
         "untrained": _mean(trial.described(start, start, targets), min(members, 5)),
     }
-    row["nulls"], kept = _nulls(trial, kinds, draws, each)
+    row["nulls"], networks = _nulls(trial, kinds, draws, each)
     if more:
         white, _ = _nulls(trial, ("shuffled",), 5, members // 5)
         row["nulls"] |= white
-        row["interventions"] = _intervened(trial, weights, start, kept)
-        row["other motions"] = _elsewhere(trial, {"real": weights, "untrained": start, **kept})
+        row["interventions"] = _intervened(trial, weights, start, networks)
+        row["other motions"] = _elsewhere(trial, {"real": weights, "untrained": start, **networks})
     return row
 
 

@@ -122,7 +122,7 @@ def _setup(values: Mapping[str, float], method: str) -> Setup:
         encoder=(Quantisation(2 * np.pi / 2 ** values["encoder bits"]),),
         torque_sensor=(Noise(times("torque noise", default.torque_sensor[0].std)),),
     )
-    made = replace(
+    setup = replace(
         JOINT_DAMPING,
         name=method,
         controller=proportional(times("position gain", KP)),
@@ -130,9 +130,9 @@ def _setup(values: Mapping[str, float], method: str) -> Setup:
         scaling=(float(values["lowest input"]), 1.0),
     )
     if method == "solver":
-        return replace(made, decay=float(values["decay"]), steps=round(values["steps"]))
+        return replace(setup, decay=float(values["decay"]), steps=round(values["steps"]))
     return replace(
-        made,
+        setup,
         steps=0,
         decay=0.0,
         momentum=1 - 1 / float(values["momentum"]),

@@ -78,8 +78,8 @@ def _cell(setup, recording, width, members) -> dict:
     """One window size: measured and predicted courses of its networks, and what follows."""
     data = TrainingSet.from_recording(split(recording)[0], width, scaling=setup.scaling)
     along = Directions.of(data)
-    _, _, kept = train_windows(setup, recording, width, members, snapshots=_COURSE)
-    courses = Weights.stack([kept[epoch] for epoch in _COURSE])
+    _, _, snapshots = train_windows(setup, recording, width, members, snapshots=_COURSE)
+    courses = Weights.stack([snapshots[epoch] for epoch in _COURSE])
     how = (setup.rate / width, _COURSE, setup.momentum, setup.warm_up)
     order = np.random.default_rng(0).permutation(len(data.y))
     seen = {"measured": [], "predicted": [], "shuffled": []}
@@ -93,14 +93,14 @@ def _cell(setup, recording, width, members) -> dict:
         seen["shuffled"].append({"change": along.energy(null.weights, weights[0])})
     correlation = _correlations(seen, along.values**2)
     del seen["shuffled"]
-    start = along.energy(kept[0])
+    start = along.energy(snapshots[0])
     row = {
         "setup": setup.name,
         "scaling": setup.scaling,
         "width": width,
         "variance": (along.values / along.values[0]) ** 2,
         "correlation": correlation,
-        "roughness, start": _rough(kept[0].hidden_weights),
+        "roughness, start": _rough(snapshots[0].hidden_weights),
     }
     every = {w: {k: np.array([c[k] for c in each]) for k in each[0]} for w, each in seen.items()}
     for who, courses in every.items():
@@ -116,7 +116,9 @@ def _cell(setup, recording, width, members) -> dict:
             **{name: courses[name] for name in ("roughness, change", "roughness, trained")},
         }
     learnt = int(np.median(row["predicted"]["learnt"]))
-    ends = [along.along(w)[..., learnt:].reshape(members, -1) for w in (kept[0], kept[EPOCHS])]
+    ends = [
+        along.along(w)[..., learnt:].reshape(members, -1) for w in (snapshots[0], snapshots[EPOCHS])
+    ]
     row["start kept"] = [_alike(*pair) for pair in zip(*ends)]
     ratio = every["measured"]["change"] / every["predicted"]["change"]
     apart = np.exp(np.abs(np.log(ratio[:, 1:, :_SHOWN])) / 2)
@@ -172,11 +174,11 @@ def _span(members=5) -> dict:
         cells += [_cell(setup, recording, width, members) for width in WINDOWS]
     recording = STATE_FEEDBACK.record()
     by_range = [_cell(replace(_PRINTED, initial=r), recording, 21, members) for r in _RANGES]
-    kept = ("correlation", "measured", "predicted", "factor", "start kept")
+    names = ("correlation", "measured", "predicted", "factor", "start kept")
     return {
         "members": members,
         "epochs": _COURSE,
         "cells": cells,
         "ranges": _RANGES,
-        "by range": [{name: cell[name] for name in kept} for cell in by_range],
+        "by range": [{name: cell[name] for name in names} for cell in by_range],
     }

@@ -38,7 +38,7 @@ def errors_and_weights(model, history, recording) -> dict:
 
 
 def _cell(setup, recording, width, members, snapshots=()):
-    model, history, kept = train_windows(setup, recording, width, members, snapshots=snapshots)
+    model, history, weights = train_windows(setup, recording, width, members, snapshots=snapshots)
     cell = {
         "errors": errors(model, recording).named(),
         "best test": history.best_test,
@@ -51,7 +51,7 @@ def _cell(setup, recording, width, members, snapshots=()):
             "test": history.test.T,
         },
     }
-    return cell, model, kept
+    return cell, model, weights
 
 
 @study
@@ -63,11 +63,11 @@ def _table_4_1(members=25) -> dict:
         cells[setup.name] = {}
         for width in WINDOWS:
             epochs = COURSE if setup is STATE_FEEDBACK else ()
-            cell, model, kept = _cell(setup, recording, width, members, epochs)
+            cell, model, weights = _cell(setup, recording, width, members, epochs)
             cells[setup.name][str(width)] = cell
             model.save(results._networks_path(setup.name, width))
-            if kept:
-                course = Weights.stack([kept[epoch][:2] for epoch in COURSE])
+            if weights:
+                course = Weights.stack([weights[epoch][:2] for epoch in COURSE])
                 TorqueModel(course, model.inputs, model.outputs).save(results._course_path(width))
     return {"members": members, "setups": cells}
 

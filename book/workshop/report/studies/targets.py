@@ -113,14 +113,14 @@ def _targets(members: int = 10, width: int = 21, epochs: int = TRIAL.epochs) -> 
     """Names of hidden filters by what was learnt, and by the size of the initial weights."""
     setup = replace(TRIAL, epochs=epochs)
     recording = setup.record()
-    made = _Targets(FilterTrial(setup, recording, width), members)
-    row = made.row()
+    targets = _Targets(FilterTrial(setup, recording, width), members)
+    row = targets.row()
     mixed = {
         (name, share): target
         for name in _MIXED
-        for share, target in zip(_SHARES, made.mixtures(row[name]))
+        for share, target in zip(_SHARES, targets.mixtures(row[name]))
     }
-    learnt = made.learnt({**row, **mixed}, 0)
+    learnt = targets.learnt({**row, **mixed}, 0)
     starts = [
         _Targets(FilterTrial(replace(setup, initial=size), recording, width), members).learnt(
             {name: row[name] for name in _MIXED}, 0

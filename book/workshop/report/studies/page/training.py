@@ -40,8 +40,8 @@ def _page_set(scaling=(-1.0, 1.0), shifted: int | None = None) -> tuple[Training
     windows, _ = cases(training, _WIDTH)
     whole = TrainingSet.from_arrays(windows, torque.reshape(-1, 2), scaling=scaling)
     samples = torque.shape[1]
-    kept = np.arange(len(windows)).reshape(-1, samples)[:, ::_EVERY].ravel()
-    data = replace(whole, x=whole.x[kept], y=whole.y[kept], step=training.step)
+    places = np.arange(len(windows)).reshape(-1, samples)[:, ::_EVERY].ravel()
+    data = replace(whole, x=whole.x[places], y=whole.y[places], step=training.step)
     return data, data.transform(*cases(test, _WIDTH))
 
 
