@@ -28,7 +28,7 @@ class Guarded:
 
 
 @dataclass(frozen=True)
-class _Stops:
+class Stops:
     """Which runs were stopped, when and why."""
 
     time: np.ndarray  # after the first control sample, s; infinite for runs that were not stopped
@@ -67,5 +67,5 @@ class _Law:
         return np.where(off, 0.0, torque)
 
     @property
-    def stops(self) -> _Stops:
-        return _Stops(self._sample * self._step, self._reason)
+    def stops(self) -> Stops:
+        return Stops(self._sample * self._step, self._reason)

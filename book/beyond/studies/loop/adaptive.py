@@ -9,10 +9,11 @@ from scipy.integrate import solve_ivp
 
 from beyond.control.adaptive import SlotineLi
 from beyond.studies.loop import adaptive_laws as batch
+from beyond.studies.loop.abreast import delayed
 from beyond.studies.loop.adaptive_laws import LAWS
 from beyond.studies.loop.feedforwards import rounded
 from ddlib.dynamics import CMU_DD_ARM_II, with_load
-from ddlib.effects import IDEAL, Backlash, DeadZone, Delay, Effects, Ripple, StribeckFriction
+from ddlib.effects import IDEAL, Backlash, DeadZone, Effects, Ripple, StribeckFriction
 from ddlib.setups import (
     JOINT_DAMPING,
     JOINT_DAMPING_COULOMB,
@@ -122,8 +123,8 @@ def _loads(setup: Setup, delays=(), seed: int = 2) -> dict:
     rows: list = []
     settings = [(m, 0) for m in _LOADS] + [(_PICKED, late) for late in delays]
     for mass, late in settings:
-        slow = replace(effects, actuator=(*effects.actuator, Delay(late)))
-        trials, _ = batch.run_trials(laws, extents, with_load(setup.arm, mass), slow)
+        arm = with_load(setup.arm, mass)
+        trials, _ = batch.run_trials(laws, extents, arm, delayed(effects, late))
         rows.append({"load": mass, "late": late, "settled": batch.errors_by_law(trials, laws)})
     return {"rows": rows}
 
@@ -311,7 +312,7 @@ def _map(setup: Setup = JOINT_DAMPING) -> dict:
     start, rows = np.broadcast_to(_BEGIN * batch.TRUTH, (len(extents), 3)), []
     for late in _LATE:
         laws = {n: batch.make(n, setup, start, factor) for n in names}
-        effects = replace(setup.effects, actuator=(*setup.effects.actuator, Delay(late)))
+        effects = delayed(setup.effects, late)
         first = batch.trial(laws, extents, setup.arm, effects)
         again = batch.trial(first.laws, extents, setup.arm, effects)
         ended = first.stops.stopped

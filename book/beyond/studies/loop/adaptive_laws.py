@@ -16,8 +16,8 @@ from beyond.control.adaptive import (
     Watched,
     mixed_regressor,
 )
-from beyond.control.guarded import Guarded
-from beyond.control.online import Abreast
+from beyond.control.guarded import Stops
+from beyond.studies.loop.abreast import repeated, run_abreast
 from ddlib.control import ComputedTorque, ControlLaw, Controller, pd
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS, Effects
@@ -133,7 +133,7 @@ class _Trial(NamedTuple):
 
     hand: np.ndarray  # root mean square of the hand's error, mm
     settled: np.ndarray  # the same without the motion's first third
-    stops: object
+    stops: Stops
     laws: dict  # the controllers with what they know after it
 
 
@@ -144,15 +144,12 @@ def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects,
         -round(_AFTER / CONTROL_STEP), round((MOTION_SECONDS + _AFTER) / CONTROL_STEP)
     )
     t = steps * CONTROL_STEP
-    reference = plan(extents, t)
-    reference = Trajectory(*(np.broadcast_to(x, (len(laws), *x.shape)) for x in reference))
-    guard = Watched(Guarded(Abreast(list(laws.values()), [1] * len(laws))))
-    log = follow(arm, guard, reference, t, effects=effects, duration=MOTION_SECONDS, **options)
-    reached, wanted = (arm.forward_kinematics(x)[..., 1, :] for x in (log.q_true, log.reference.q))
-    off = 1e3 * np.linalg.norm(reached - wanted, axis=-1)
-    stops = guard.law.stops
-    running = stops.running(log.t)
-    off = np.where(running, off, np.nan)[..., log.motion]
+    options = {"effects": effects, "duration": MOTION_SECONDS, **options}
+    reference = repeated(plan(extents, t), len(laws))
+    log, gap, stops, ended = run_abreast(
+        arm, list(laws.values()), [1] * len(laws), reference, t, **options
+    )
+    off = np.where(stops.running(log.t), 1e3 * gap, np.nan)[..., log.motion]
     third = off.shape[-1] // 3
 
     def rms(x):
@@ -160,7 +157,7 @@ def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects,
 
     after = {
         name: _taught(law, own.estimate[0]) if hasattr(own, "estimate") else law
-        for (name, law), own in zip(laws.items(), guard.law.inner.laws)
+        for (name, law), own in zip(laws.items(), ended)
     }
     return _Trial(rms(off), rms(off[..., third:]), stops, after)
 

@@ -21,6 +21,7 @@ from beyond.studies.loop import (
     motions,
     stirring,
 )
+from beyond.studies.loop.abreast import repeated
 from beyond.studies.loop.chain import Sample, chain, extents, recorded
 from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, Setup
 from ddlib.trajectories import (
@@ -200,7 +201,7 @@ def _after(draw, t, reference: Trajectory, asked: dict) -> dict:
         scaled.torque = scaled.torque * speed**2
         every = {"none": draw.plain} | {k: x.controller(False) for k, x in taught.items()}
         every["memory, scaled"] = scaled
-        many = learning.repeated(wanted, len(every))
+        many = repeated(wanted, len(every))
         errors, _ = learning.trial(draw, list(every.values()), [1] * len(every), many, times)
         by_motion[motion] = dict(zip(every, errors))
     return by_motion

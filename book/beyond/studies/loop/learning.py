@@ -7,16 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from beyond.control.adaptive import Watched
 from beyond.control.feedback_error import GenericTerms, RigidBodyTerms
-from beyond.control.guarded import Guarded
-from beyond.control.online import Abreast
 from beyond.studies.loop import learners
+from beyond.studies.loop.abreast import repeated, run_abreast
 from ddlib.control import Feedforward
-from ddlib.dynamics import Arm, end_point_error, with_load
+from ddlib.dynamics import Arm, with_load
 from ddlib.learning import Weights
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
-from ddlib.simulation import follow
 from ddlib.trajectories import Trajectory, pick_and_place
 from workshop.report.code_hash import study
 
@@ -27,16 +24,10 @@ _RATES = (0.1, 0.3, 1.0, 3.0, 10.0)  # multiples of the rates chosen
 
 def trial(draw: learners.Draw, controllers, rows, references, t, arm: Arm | None = None):
     """End-point errors (mm, RMS), (rows, seeds), and stops of one trial of controllers abreast."""
-    arm, guard = arm or draw.setup.arm, Watched(Guarded(Abreast(controllers, rows)))
-    run = follow(arm, guard, references, t, effects=draw.effects)
-    off = np.linalg.norm(end_point_error(arm, run.reference.q, run.q_true), axis=-1)
-    during = (run.t > -1e-9) & (run.t < -10 * t[0] - 1e-9)  # the rest is a tenth of the motion
-    return 1e3 * np.sqrt((off[..., during] ** 2).mean(-1)), guard.law.stops
-
-
-def repeated(reference: Trajectory, count: int) -> Trajectory:
-    """A reference several times, along a new first axis."""
-    return Trajectory(*(np.broadcast_to(x, (count, *x.shape)) for x in reference))
+    arm = arm or draw.setup.arm
+    log, gap, stops, _ = run_abreast(arm, controllers, rows, references, t, effects=draw.effects)
+    during = (log.t > -1e-9) & (log.t < -10 * t[0] - 1e-9)  # the rest is a tenth of the motion
+    return 1e3 * np.sqrt((gap[..., during] ** 2).mean(-1)), stops
 
 
 def practise(draw, pupils, reference, t, tested: Trajectory | None = None):

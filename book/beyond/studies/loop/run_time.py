@@ -22,9 +22,10 @@ from beyond.rivals.lagrangian import LagrangianNetwork
 from beyond.rivals.networks import BySolver
 from beyond.rivals.protocol import Cases, Estimating
 from beyond.studies.loop import feedforwards as parts
+from beyond.studies.loop.abreast import delayed
 from ddlib.control import PID, plant
 from ddlib.dynamics import end_point_error, with_load
-from ddlib.effects import CoulombFriction, Delay, ViscousFriction
+from ddlib.effects import CoulombFriction, ViscousFriction
 from ddlib.learning import sliding_windows
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, Setup, errors, split
@@ -205,7 +206,7 @@ def _changed(setup: Setup, made: dict, reference) -> dict:
         effects = replace(setup.effects, friction=friction)
         result["friction"][f"{factor:g}"] = _with_computed(setup, made, reference, effects=effects)
     for late in _LATE:
-        effects = replace(setup.effects, actuator=(*setup.effects.actuator, Delay(late)))
+        effects = delayed(setup.effects, late)
         result["delay"][f"{late}"] = _with_computed(setup, made, reference, effects=effects)
     return result
 
@@ -267,7 +268,7 @@ def _inside(setup: Setup) -> dict:
     day = setup.repeated(1).effects
     for name, several in models.items():
         for late in _LATE_INSIDE:
-            effects = replace(day, actuator=(*day.actuator, Delay(late)))
+            effects = delayed(day, late)
             row: dict = {"stopped": [], "error": [], "poles": []}
             for model in several:
                 law = Watched(
