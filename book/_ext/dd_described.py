@@ -11,11 +11,11 @@ from html import escape
 from pathlib import Path
 
 from docutils import nodes
-from markup import Markup
+from rewriter import Rewriter
 from sphinx.transforms import SphinxTransform
 
 
-class Pictures(Markup):
+class Pictures(Rewriter):
     """The SVG pictures of some markup, whose names get more words."""
 
     def __init__(self, text: str, words: str):

@@ -20,7 +20,7 @@ from typing import NamedTuple
 from fontTools.pens.svgPathPen import SVGPathPen
 from fontTools.pens.transformPen import TransformPen
 from fontTools.ttLib import TTFont
-from markup import Markup, tag
+from rewriter import Rewriter, tag
 
 ICON_FONT = "vendor/fontawesome/webfonts/fa-solid-900.ttf"
 UNUSED_FILES = ("vendor", "locales", "scripts/fontawesome.js*", "**/*.map", "*webpack-macros.html")
@@ -100,7 +100,7 @@ class Script(NamedTuple):
         return self.attributes.get("src", "").partition("?")[0].rpartition("/")[2]
 
 
-class Page(Markup):
+class Page(Rewriter):
     """A page as Sphinx, the theme and myst-nb write it, with what it needs instead."""
 
     def __init__(self, text: str, icons: Icons):

@@ -8,7 +8,7 @@ from itertools import accumulate
 from operator import itemgetter
 
 
-class Markup(HTMLParser):
+class Rewriter(HTMLParser):
     """Markup that is read once; its methods for tags note changes, which `changed` makes."""
 
     def __init__(self, text: str):
