@@ -23,11 +23,11 @@ class Pictures(Rewriter):
         super().__init__(text)
 
     def handle_starttag(self, name, attributes):
-        label = dict(attributes).get("aria-label") if name == "svg" else None
-        if label is not None:
-            before = f'aria-label="{escape(label)}'
-            told = self.get_starttag_text().replace(before, f"{before} {escape(self.words)}", 1)
-            self.change(self.start, self.end, told)
+        before, label, after = self.get_starttag_text().partition(' aria-label="')
+        if name == "svg" and label:
+            told, _, after = after.partition('"')
+            new = f'{before}{label}{told} {escape(self.words)}"{after}'
+            self.change(self.start, self.end, new)
 
 
 def described(path: Path) -> dict[str, str]:
