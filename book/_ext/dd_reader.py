@@ -47,7 +47,7 @@ if importlib.util.find_spec("workshop") is None:
     if "google.colab" in sys.modules:
         sys.modules["google.colab"].output.enable_custom_widget_manager()"""
 QUOTED = re.compile(r"(?m)^quoted\(.*\)$")  # the numbers stand in the text already
-MARK = ("<abbr title=\"the book's number\">", "</abbr>")  # around a number in the text
+MARK = ('<abbr title="the book\'s number">', "</abbr>")  # around a number in the text
 ARCHIVE = "notebooks.zip"  # beside the first page
 FOLDED = ("remove-cell", "remove-input", "hide-input")
 CHANGE_THIS = "change-this"
