@@ -176,6 +176,7 @@ def make(built: Path, folder: Path, volume: str, browser) -> Path:
         with opened(browser, draft) as page:
             at = numbers(printed(page))
             progress.update()
+        with opened(browser, draft) as page:  # anew: printed again, it would break pages elsewhere
             headings = page.evaluate((HERE / "fill.js").read_text(encoding="utf-8"), at)
             writer = PdfWriter(clone_from=io.BytesIO(printed(page)))
         titled(writer.root_object["/Outlines"].get_object().get("/First"), headings)
