@@ -5,6 +5,7 @@ import hashlib
 import html
 import json
 import re
+import subprocess
 import sys
 
 import chromium
@@ -78,6 +79,18 @@ def test_without_a_mirror_wheels_come_from_pyodides_address_and_stay(tmp_path, m
         said.startswith("no sympy of Pyodide") and "MIRROR=" in said and "cannot be reached" in said
     )
     assert len(said.splitlines()) == 1 and len(said) <= 300
+
+
+def test_without_npms_registry_one_sentence_says_what_is_missing(tmp_path, monkeypatch):
+    said = "npm error code EAI_AGAIN\nnpm error errno EAI_AGAIN\nnpm error request to x failed\n"
+    ended = subprocess.CompletedProcess([], 1, "", said)
+    monkeypatch.setattr(live.shutil, "which", lambda name: name)
+    monkeypatch.setattr(live.subprocess, "run", lambda *args, **how: ended)
+    with pytest.raises(live.Refused) as refusal:
+        live.core(tmp_path / "kept")
+    told = str(refusal.value)
+    assert len(told.splitlines()) == 1 and "ended with “request to x failed”" in told
+    assert told.startswith(f"no core of Pyodide {live.VERSION}") and live.PUBLIC in told
 
 
 def test_pyodides_address_has_its_version():
