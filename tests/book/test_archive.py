@@ -6,14 +6,12 @@ import zipfile
 
 import pytest
 from book_pages import ROOT
-from live_pages import IDLE, MIRROR
-from open_cells import lesson
+from live_pages import MIRROR, runs_through
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import live
 import release
 
-PAGE = "book/feedback"
 DEAD_END = {"server": "http://127.0.0.1:9", "bypass": "127.0.0.1"}  # a proxy that is not there
 
 
@@ -51,12 +49,7 @@ def test_the_archive_runs_with_the_network_cut(browser, address):
     tab.on("console", lambda m: m.type in {"error", "warning"} and wrong.append(m.text))
     tab.on("response", lambda answer: answer.status >= 400 and wrong.append(answer.url))
     context.on("request", lambda request: asked.append(request.url))
-    tab.goto(f"{address}/{PAGE}.html")
-    tab.get_by_role("button", name="Run this page").click()
-    tab.locator(IDLE).wait_for(timeout=900_000)
-    times = tab.locator(".live-time").all_inner_texts()
-    assert len(times) == len(live.live_cells(lesson(PAGE))) and all(times)
-    assert not tab.locator(".live-error, .live-warning, .live-note:has(a)").all_inner_texts()
+    runs_through(tab, address, "book/feedback")
     assert not wrong
     assert any(url.endswith(".whl") for url in asked)  # what Python's worker asks is seen, too
     own = (f"{address}/", f"blob:{address}/", "data:")

@@ -9,6 +9,7 @@ import subprocess
 import sys
 
 import chromium
+import firefox
 import live_pages
 import numpy as np
 import pytest
@@ -186,13 +187,17 @@ def test_a_reader_changes_a_cell_and_goes_back(browser, site):
 @pytest.mark.slow
 @pytest.mark.parametrize("page", WALK)
 def test_open_cells_run_through_in_the_page(browser, site, page):
-    tab = browser.new_page()
-    tab.goto(f"{site}/{page}.html")
-    tab.get_by_role("button", name="Run this page").click()
-    tab.locator(IDLE).wait_for(timeout=900_000)
-    assert all(times := tab.locator(".live-time").all_inner_texts())
-    assert len(times) == len(live.live_cells(lesson(page)))
-    assert not tab.locator(".live-error, .live-warning, .live-note:has(a)").all_inner_texts()
+    live_pages.runs_through(browser.new_page(), site, page)
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+def test_a_lesson_runs_through_in_firefox_too(playwright, site):
+    """Wherever one is installed; `make firefox` has all lessons run in it."""
+    if firefox.find() is None:
+        pytest.skip(firefox.HOW_TO_GET_ONE)
+    with firefox.launched(playwright) as browser:
+        live_pages.runs_through(browser.new_page(), site, "book/feedback")
 
 
 def marked(tab) -> list[str]:
