@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import fields
+from math import prod
 
 import numpy as np
 
 from ddlib.control import PID
 from ddlib.dynamics import Arm
 from ddlib.effects import CoulombFriction, Effects, Quantisation, Saturation, ViscousFriction
-from ddlib.learning import Scaler, TorqueModel
+from ddlib.learning import Scaler, TorqueModel, Weights
 from ddlib.setups import Setup
 from ddlib.simulation import CONTROL_STEP, Recording
 from ddlib.trajectories import MOTION_SECONDS
-
-# Order of the weights in `_weight_bytes`.
-_FIELDS = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
 
 
 def plant(arm: Arm, effects: Effects) -> dict:
@@ -94,9 +93,18 @@ def network(model: TorqueModel) -> dict:
 
 
 def _weight_bytes(model: TorqueModel) -> bytes:
-    """All weights of one network as little-endian float32, as committed, in the order `_FIELDS`."""
-    parts = [np.ravel(getattr(model.weights, name)) for name in _FIELDS]
+    """All weights of one network as little-endian float32, as committed: field after field."""
+    parts = [np.ravel(getattr(model.weights, field.name)) for field in fields(Weights)]
     return np.concatenate(parts).astype("<f4").tobytes()
+
+
+def weights_of(numbers, layout: dict) -> Weights:
+    """The network whose weights the page has in one array, in the order of `_weight_bytes`."""
+    hidden, outputs, joints, width = (layout[n] for n in ("hidden", "outputs", "joints", "width"))
+    shapes = [(hidden, joints, width), (hidden,), (outputs, hidden)]
+    shapes += [(outputs, joints, width), (outputs,)]
+    parts = np.split(numbers, np.cumsum([prod(shape) for shape in shapes])[:-1])
+    return Weights(*(part.reshape(shape) for part, shape in zip(parts, shapes)))
 
 
 def networks(models: Iterable[TorqueModel]) -> tuple[list[dict], bytes]:

@@ -25,7 +25,7 @@ from ddlib.setups import INITIAL, JOINT_DAMPING, Setup
 from ddlib.simulation import LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG
 from ddlib.widgets.base import PageWidget
-from ddlib.widgets.engine._plain import _FIELDS, loop, plant
+from ddlib.widgets.engine._plain import loop, plant, weights_of
 from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.picker import _pad, _parameters
 from ddlib.widgets.scripts import bundle, styles
@@ -61,25 +61,12 @@ def first_weights(seed: int, width: int = 21, hidden: int = HIDDEN_UNITS) -> Wei
         Samples of the window; hidden units.
     """
     state, joints = integer("seed", seed, 0, 2**32 - 1), len(JOINTS)
-    shapes = _shapes(hidden, joints, joints, width)
-    parts = {}
-    for name in _FIELDS:
-        draws = np.empty(int(np.prod(shapes[name])))
-        for i in range(draws.size):
-            state = (state + 0x6D2B79F5) % 2**32
-            draws[i] = INITIAL * (2 * _mixed(state) / 2**32 - 1)
-        parts[name] = draws.reshape(1, *shapes[name])
-    return Weights(**parts)
-
-
-def _shapes(hidden: int, outputs: int, joints: int, width: int) -> dict[str, tuple]:
-    return {
-        "hidden_weights": (hidden, joints, width),
-        "hidden_bias": (hidden,),
-        "output_weights": (outputs, hidden),
-        "direct_weights": (outputs, joints, width),
-        "output_bias": (outputs,),
-    }
+    layout = {"hidden": hidden, "outputs": joints, "joints": joints, "width": width}
+    draws = np.empty(hidden * (joints * width + 1) + joints * (hidden + joints * width + 1))
+    for i in range(draws.size):
+        state = (state + 0x6D2B79F5) % 2**32
+        draws[i] = INITIAL * (2 * _mixed(state) / 2**32 - 1)
+    return weights_of(draws, layout)[None]
 
 
 def _mixed(state: int) -> int:
@@ -314,21 +301,14 @@ class NetworkTrainer(PageWidget):
         results = dict.fromkeys(("weights", "model", *_NUMBERS))
         if reached and all(reached[name] == value for name, value in choices.items()):
             results |= {name: reached[name] for name in _NUMBERS}
-            results["weights"] = weights = _weights(self.weight_bytes, self.spec["layout"])
+            numbers = np.frombuffer(self.weight_bytes, "<f8")
+            results["weights"] = weights = weights_of(numbers, self.spec["layout"])
             scaling = reached["scaling"]
             ranges = _SCALINGS[self.inputs], TARGET_RANGE
             pair = (_scaler(scaling[name], to) for name, to in zip(("inputs", "outputs"), ranges))
             results["model"] = TorqueModel(weights, *pair, LOG_STEP)
         with self.hold_trait_notifications():
             self._keep(**results)
-
-
-def _weights(content: bytes, layout: dict) -> Weights:
-    """One network from the page's bytes."""
-    shapes = _shapes(**layout)
-    ends = np.cumsum([np.prod(shapes[name]) for name in _FIELDS])
-    parts = np.split(np.frombuffer(content, "<f8"), ends[:-1])
-    return Weights(**{name: part.reshape(shapes[name]) for name, part in zip(_FIELDS, parts)})
 
 
 def _scaler(scaling: dict, target) -> Scaler:
