@@ -137,7 +137,7 @@ class Finder:
 class _Serial:
     """In place of a pool of threads: the page has one."""
 
-    def __init__(self, workers):
+    def __init__(self, workers, **options):
         pass
 
     def __enter__(self):
