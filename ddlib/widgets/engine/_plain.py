@@ -75,7 +75,7 @@ def loop(setup: Setup, recording: Recording) -> dict:
 
 
 def network(model: TorqueModel) -> dict:
-    """Layout and scaling of one network; `_weight_bytes` has its weights."""
+    """Layout and scaling of one network; `weight_bytes` has its weights."""
     weights = model.weights if isinstance(model, TorqueModel) else None
     if weights is None or weights.hidden_bias.ndim != 1:
         raise TypeError(f"model must be a single network, got {model!r}")
@@ -92,14 +92,14 @@ def network(model: TorqueModel) -> dict:
     }
 
 
-def _weight_bytes(model: TorqueModel) -> bytes:
+def weight_bytes(model: TorqueModel) -> bytes:
     """All weights of one network as little-endian float32, as committed: field after field."""
     parts = [np.ravel(getattr(model.weights, field.name)) for field in fields(Weights)]
     return np.concatenate(parts).astype("<f4").tobytes()
 
 
 def weights_of(numbers, layout: dict) -> Weights:
-    """The network whose weights the page has in one array, in the order of `_weight_bytes`."""
+    """The network whose weights the page has in one array, in the order of `weight_bytes`."""
     hidden, outputs, joints, width = (layout[n] for n in ("hidden", "outputs", "joints", "width"))
     shapes = [(hidden, joints, width), (hidden,), (outputs, hidden)]
     shapes += [(outputs, joints, width), (outputs,)]
@@ -110,7 +110,7 @@ def weights_of(numbers, layout: dict) -> Weights:
 def networks(models: Iterable[TorqueModel]) -> tuple[list[dict], bytes]:
     """What ``static/sliding.js`` takes: `network` of each model, and the weights of all."""
     models = list(models)
-    return [network(model) for model in models], b"".join(map(_weight_bytes, models))
+    return [network(model) for model in models], b"".join(map(weight_bytes, models))
 
 
 def _scaling(scaler: Scaler) -> dict:

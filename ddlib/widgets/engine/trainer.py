@@ -31,13 +31,21 @@ from ddlib.widgets.picker import _pad, _parameters
 from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.still import still_picture
 
+# By these a page trains unless it says otherwise, and so does the study of what its readers see.
+WIDTH = 21  # samples of the window
+EVERY = 5  # of the training windows every fifth is learnt from; of trajectory 6 all count
+EPOCHS = 2000  # of a run
+CHECK = 5  # epochs between two looks at errors and shapes
+LEVEL = 0.2  # RMSS in training below which the error counts as gone
+MOMENTUM = 0.98  # acceleration
+SHIFTS = 5  # draws of torques shifted in time
+
 _FINEST = 5e-5  # step of the encoder, rad: readings are sent as int16
-_EVERY = 5  # of the training windows the page shows every fifth; of trajectory 6 all
 _SCALINGS = {"centred": (-1.0, 1.0), "printed": (0.0, 1.0)}  # ranges of the inputs
 _STEPS = (0.25, 0.5, 1.0, 2.0, 4.0)  # step sizes, over `ddlib.learning.default_rate`
 _MOMENTA = (0.0, 0.5, 0.9, 0.95, 0.98, 0.995)
 _SEEDS = 50  # sets of initial weights that can be chosen
-_SEED, _INPUTS, _STEP, _MOMENTUM = 1, "printed", 1.0, 0.98  # choices at the start
+_SEED, _INPUTS, _STEP = 1, "printed", 1.0  # choices at the start
 _ERRORS = (0.03, 2.0)  # range of the errors shown
 
 _CHOICES = ("extents_deg", "seed", "inputs", "shifted", "step_size", "momentum")
@@ -50,7 +58,7 @@ _HINT = (
 )
 
 
-def first_weights(seed: int, width: int = 21, hidden: int = HIDDEN_UNITS) -> Weights:
+def first_weights(seed: int, width: int = WIDTH, hidden: int = HIDDEN_UNITS) -> Weights:
     """The page's random initial weights, as an ensemble of one network.
 
     Parameters
@@ -165,7 +173,7 @@ class NetworkTrainer(PageWidget):
     inputs = t.Enum(tuple(_SCALINGS), _INPUTS).tag(sync=True)
     shifted = t.Bool(False).tag(sync=True)
     step_size = t.Enum(_STEPS, _STEP).tag(sync=True)
-    momentum = t.Enum(_MOMENTA, _MOMENTUM).tag(sync=True)
+    momentum = t.Enum(_MOMENTA, MOMENTUM).tag(sync=True)
     epoch = t.Int(0).tag(sync=True)
     reached = t.Dict(help="the page's last results, and the choices behind them", read_only=True)
     reached.tag(sync=True)
@@ -182,13 +190,13 @@ class NetworkTrainer(PageWidget):
         setup: Setup = JOINT_DAMPING,
         extents_deg=APPENDIX_I,
         *,
-        width: int = 21,
+        width: int = WIDTH,
         hidden: int = HIDDEN_UNITS,
-        epochs: int = 2000,
-        check: int = 5,
-        level: float = 0.2,
-        momentum: float = _MOMENTUM,
-        shifts: int = 5,
+        epochs: int = EPOCHS,
+        check: int = CHECK,
+        level: float = LEVEL,
+        momentum: float = MOMENTUM,
+        shifts: int = SHIFTS,
         code: str = "",
     ):
         like("setup", setup, "Setup")
@@ -231,7 +239,7 @@ class NetworkTrainer(PageWidget):
             },
             "runs": len(recording.q),
             "samples": samples,
-            "every": _EVERY,
+            "every": EVERY,
             "encoder": step,
             "ranges": {name: list(pair) for name, pair in _SCALINGS.items()},
             "target": list(TARGET_RANGE),
