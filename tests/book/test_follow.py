@@ -106,6 +106,15 @@ def test_an_object_changed_in_place_is_made_again_first(script):
 
 
 @pytest.mark.browser
+def test_a_figure_to_handle_stays_as_the_reader_left_it(script):
+    cells = told("a = Picker()", "b = a.recording", "a.extents = 1, 2")
+    turns = [1, 2, 3]
+    assert script.evaluate(SPOILED, [cells, 1, turns]) == {"maker": 0, "name": "a"}
+    cells[0]["names"]["handled"] = ["a"]
+    assert script.evaluate(SPOILED, [cells, 1, turns]) is None
+
+
+@pytest.mark.browser
 @pytest.mark.parametrize(
     ("before", "now", "wanted"),
     [
@@ -230,7 +239,7 @@ def test_handles_of_a_lesson(page):
 @pytest.fixture
 def run(monkeypatch):
     """Run a cell below others: what is shown, and what is told of names."""
-    for name in ("space", "made", "known"):
+    for name in ("space", "made", "known", "drawn"):
         monkeypatch.setattr(kernel, name, {})
 
     async def nothing(package):
@@ -261,6 +270,33 @@ def test_a_cell_finds_what_the_cells_above_gave_and_no_more(run):
     run("def f():\n    return k", "one")
     run("k = 5", "two", ["one"])
     assert run("print(f())", "three", ["one", "two"])[0] == [("text", "5\n")]
+
+
+FIGURE = """
+class Figure:
+    def __init__(self, draw):
+        self.draw, self.svg = draw, "<svg>wide</svg>"
+    @property
+    def narrow(self):
+        return self.draw()
+    def _repr_html_(self):
+        return self.svg + self.narrow
+"""
+
+
+def test_forms_for_a_narrow_page_are_drawn_when_they_are_wanted(run):
+    drawn = []
+    run(FIGURE, "one")
+    kernel.made["one"]["drawn"] = drawn
+    code = "a = 1\ndef draw():\n    drawn.append(a)\n    return f'narrow {a}'\nFigure(draw)"
+    wide = '<div class="ddlib-figure"><svg>wide</svg></div>'
+    assert run(code, "two", ["one"], wide=True)[0] == [("figure", wide)] and not drawn
+    run("a = 2", "three", ["one", "two"])
+    told = []
+    for _ in range(2):
+        kernel.forms(lambda *said: told.append(said))
+    assert told == [("two", 0, "<svg>wide</svg>narrow 1")]  # by the names of its own cell
+    assert run(code, "two", ["one"])[0] == [("html", told[0][2])]  # on a narrow page at once
 
 
 def test_what_is_tried_beside_is_not_kept(run):

@@ -5,9 +5,12 @@ import hashlib
 import html
 import json
 import re
+import subprocess
 import sys
+from dataclasses import replace
 
 import chromium
+import firefox
 import live_pages
 import numpy as np
 import pytest
@@ -17,8 +20,18 @@ from chapter_rules import is_check, is_starter, visible
 from live_pages import IDLE, plain
 from open_cells import lesson
 
+from ddlib.control import pd
+from ddlib.dynamics import CMU_DD_ARM_II
+from ddlib.effects import (
+    CoulombFriction,
+    Effects,
+    FlexibleJoint,
+    StickSlipFriction,
+    ViscousFriction,
+)
 from ddlib.learning import Descent, TrainingSet, Weights
 from ddlib.setups import STATE_FEEDBACK
+from ddlib.simulation import plant, record
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 sys.path.insert(0, str(ROOT / "book" / "_ext" / "live_page"))
@@ -26,6 +39,7 @@ import absent
 import kernel
 import live
 
+ONE, OTHER = (20.0, 30.0), (45.0, 10.0)  # extents of motions, degrees
 FOCUSED = "(el) => el === document.activeElement"
 
 
@@ -80,6 +94,18 @@ def test_without_a_mirror_wheels_come_from_pyodides_address_and_stay(tmp_path, m
     assert len(said.splitlines()) == 1 and len(said) <= 300
 
 
+def test_without_npms_registry_one_sentence_says_what_is_missing(tmp_path, monkeypatch):
+    said = "npm error code EAI_AGAIN\nnpm error errno EAI_AGAIN\nnpm error request to x failed\n"
+    ended = subprocess.CompletedProcess([], 1, "", said)
+    monkeypatch.setattr(live.shutil, "which", lambda name: name)
+    monkeypatch.setattr(live.subprocess, "run", lambda *args, **how: ended)
+    with pytest.raises(live.Refused) as refusal:
+        live.core(tmp_path / "kept")
+    told = str(refusal.value)
+    assert len(told.splitlines()) == 1 and "ended with “request to x failed”" in told
+    assert told.startswith(f"no core of Pyodide {live.VERSION}") and live.PUBLIC in told
+
+
 def test_pyodides_address_has_its_version():
     assert re.fullmatch(rf"https://\S+/v{re.escape(live.VERSION)}/full", live.PUBLIC)
 
@@ -110,6 +136,36 @@ def test_descent_in_the_page_is_that_of_the_package():
         errors = [each.epoch(True, 0.5) for each in both]
     np.testing.assert_allclose(*errors, rtol=1e-5)
     np.testing.assert_allclose(*(each.weights().hidden_weights for each in both), atol=1e-5)
+
+
+VISCOUS, DRY = ViscousFriction((5.3, 1.1)), CoulombFriction((1.5, 0.45))
+
+
+@pytest.mark.parametrize(
+    ("arm", "effects", "plain"),
+    [
+        (CMU_DD_ARM_II, Effects(), True),
+        (CMU_DD_ARM_II, Effects((VISCOUS,)), True),
+        (CMU_DD_ARM_II, Effects((DRY, VISCOUS)), True),
+        (CMU_DD_ARM_II, Effects((VISCOUS, StickSlipFriction((1.5, 0.45), (2.0, 0.6)))), False),
+        (CMU_DD_ARM_II, Effects(transmission=(FlexibleJoint((2e3, 6e2), (0.2, 0.1)),)), False),
+        (replace(CMU_DD_ARM_II, gravity_moments=(30.0, 10.0)), Effects((VISCOUS,)), False),
+    ],
+)
+def test_a_single_run_in_the_page_is_that_of_the_package(monkeypatch, arm, effects, plain):
+    law = pd((300.0, 90.0), (35.0, 10.0))
+    wanted, both = (record(arm, law, angles, effects=effects) for angles in (ONE, [ONE, OTHER]))
+    steps = []
+    usual, quick = plant.Plant._advance, absent._runge_kutta
+    monkeypatch.setattr(absent, "_runge_kutta", lambda *given: steps.append(1) or quick(*given))
+    monkeypatch.setattr(plant.Plant, "_advance", absent.plainly(usual))
+    made = record(arm, law, ONE, effects=effects)
+    assert bool(steps) == plain
+    np.testing.assert_allclose(made.q_true, wanted.q_true, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(made.tau_true, wanted.tau_true, rtol=0, atol=1e-9)
+    steps.clear()  # several runs at once go as they did
+    np.testing.assert_array_equal(record(arm, law, [ONE, OTHER], effects=effects).q, both.q)
+    assert not steps
 
 
 def test_cells_say_what_they_cannot(monkeypatch):
@@ -173,13 +229,17 @@ def test_a_reader_changes_a_cell_and_goes_back(browser, site):
 @pytest.mark.slow
 @pytest.mark.parametrize("page", WALK)
 def test_open_cells_run_through_in_the_page(browser, site, page):
-    tab = browser.new_page()
-    tab.goto(f"{site}/{page}.html")
-    tab.get_by_role("button", name="Run this page").click()
-    tab.locator(IDLE).wait_for(timeout=900_000)
-    assert all(times := tab.locator(".live-time").all_inner_texts())
-    assert len(times) == len(live.live_cells(lesson(page)))
-    assert not tab.locator(".live-error, .live-warning, .live-note:has(a)").all_inner_texts()
+    live_pages.runs_through(browser.new_page(), site, page)
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+def test_a_lesson_runs_through_in_firefox_too(playwright, site):
+    """Wherever one is installed; `make firefox` has all lessons run in it."""
+    if firefox.find() is None:
+        pytest.skip(firefox.HOW_TO_GET_ONE)
+    with firefox.launched(playwright) as browser:
+        live_pages.runs_through(browser.new_page(), site, "book/feedback")
 
 
 def marked(tab) -> list[str]:

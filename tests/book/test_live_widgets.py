@@ -63,3 +63,46 @@ def test_what_is_picked_and_trained_in_the_page_python_has(browser, site):
     told = run(5, TRAINED).inner_text().split()
     assert told[:2] == ["100", "21"] and 0 < float(told[2]) < 2
     assert not wrong
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+def test_what_follows_a_drag_leaves_it(browser, site):
+    """The cells that take the picker run; neither its own cell nor one that sets it does."""
+    tab = browser.new_page(viewport={"width": 1000, "height": 900})
+    tab.goto(f"{site}/{PAGE}.html")
+    tab.get_by_role("button", name="Run this page").click()
+    tab.get_by_role("button", name="Stop").click()
+    code = [
+        PICKER,
+        "at = picker.extents_deg\nprint(*at)",
+        "picker.extents_deg = 12, 34",
+        "print(at)",
+    ]
+    for k, source in enumerate(code):
+        field = tab.get_by_role("textbox").nth(k)
+        field.fill(source)
+        field.press("Control+Enter")
+        tab.locator(IDLE).wait_for(timeout=600_000)
+    assert not tab.locator(".live-error").all_inner_texts()
+    shown = tab.locator(".ddlib-widget").first
+    shown.evaluate("(el) => (el.dataset.seen = 'before')")
+    extents = shown.locator(".slider output")
+    assert extents.all_inner_texts()[:2] == ["12.0°", "34.0°"]
+    square = shown.locator("svg").first
+    square.scroll_into_view_if_needed()
+    box = square.bounding_box()
+    tab.mouse.click(box["x"] + 0.6 * box["width"], box["y"] + 0.4 * box["height"])
+    dragged = [told.rstrip("°") for told in extents.all_inner_texts()[:2]]
+    assert dragged != ["12.0", "34.0"]
+    follows = tab.get_by_role("button", name="Run what follows")
+    tab.locator(".live-mark >> text=May show").first.wait_for()
+    follows.click()
+    tab.wait_for_timeout(200)
+    tab.locator(IDLE).wait_for(timeout=600_000)
+    outputs = tab.locator(".live-output")
+    assert [f"{float(told):.1f}" for told in outputs.nth(1).inner_text().split()] == dragged
+    told = outputs.nth(3).inner_text().strip("()\n").split(", ")
+    assert [f"{float(each):.1f}" for each in told] == dragged
+    assert [told.rstrip("°") for told in extents.all_inner_texts()[:2]] == dragged
+    assert shown.get_attribute("data-seen") == "before" and follows.is_disabled()

@@ -1,12 +1,14 @@
 """*Run this page*: what ours import and the browser does not have.
 
-`train_ensemble` descends by the sums of its own module, in numpy. What stands in for PyTorch and
-for widgets is in the folder `instead`.
+`train_ensemble` descends by the sums of its own module, in numpy; a single run of a plain arm goes
+by plain numbers, as numpy takes long for so few. What stands in for PyTorch and for widgets is in
+the folder `instead`.
 """
 
 from __future__ import annotations
 
 import importlib.machinery
+import math
 import sys
 import types
 from concurrent.futures import Future
@@ -22,6 +24,7 @@ INERT = ("tqdm",)
 """Modules in which every name is a class that takes anything and does nothing."""
 
 DESCENT = "ddlib.learning.descent"
+PLANT = "ddlib.simulation.plant"
 PICTURE = "ddlib.widgets.still"  # of a widget's start, for pages without script
 
 
@@ -112,6 +115,8 @@ class Finder:
             usual(module)
         if module.__name__ == DESCENT:
             vars(module).update(Descent=Descent, prepare=_prepare, kernels=lambda: "numpy")
+        if module.__name__ == PLANT:
+            module.Plant._advance = plainly(module.Plant._advance)
         if module.__name__ == PICTURE:
             module.still_picture = lambda *given: ""
         if hasattr(module, "ThreadPoolExecutor"):
@@ -137,7 +142,7 @@ class Finder:
 class _Serial:
     """In place of a pool of threads: the page has one."""
 
-    def __init__(self, workers):
+    def __init__(self, workers, **options):
         pass
 
     def __enter__(self):
@@ -175,11 +180,9 @@ class Descent:
     """`ddlib.learning.Descent` by numpy, in double precision."""
 
     def __init__(self, weights, x, y, eps, momentum):
-        from ddlib.learning.network import rows
-
         n, self.hidden = weights.hidden_bias.shape
         self.shape, self.members = weights.hidden_weights.shape[-2:], n
-        first = rows(weights)
+        first = weights.rows
         self.rows = first.shape[1]
         self.first = first.reshape(n * self.rows, -1).astype(float)
         self.second = weights.output_weights.astype(float)
@@ -225,6 +228,79 @@ class Descent:
 
         first = self.first.reshape(self.members, self.rows, -1).copy()
         return from_rows(first, self.second.copy(), self.shape)
+
+
+def plainly(usual):
+    """`Plant._advance`, by Python's own numbers where it can: the same sums in the same order."""
+
+    def advance(plant, x, v, tau, step):
+        if x.shape == (2,) == np.shape(tau) and isinstance(step, float):
+            if not hasattr(plant, "_plain"):
+                plant._plain = _plain(plant)
+            if plant._plain:
+                try:
+                    return _runge_kutta(*plant._plain, x, v, tau, step)
+                except (ValueError, ArithmeticError):  # numpy goes on with what is no number
+                    pass
+        return usual(plant, x, v, tau, step)
+
+    return advance
+
+
+def _plain(plant):
+    """Numbers of an arm and of its smooth frictions; None if it has more than these."""
+    from ddlib.effects import CoulombFriction, ViscousFriction
+
+    arm, frictions = plant.arm, []
+    more = plant._joint or plant.motor or plant._sticking or plant._remembering
+    if more or arm.gravity_moments != (0.0, 0.0):
+        return None
+    for friction in plant._smooth.friction:
+        if type(friction) not in (ViscousFriction, CoulombFriction):
+            return None
+        dry = type(friction) is CoulombFriction
+        size = np.asarray(friction.level if dry else friction.coefficient, dtype=float)
+        if size.shape != (2,):
+            return None
+        frictions.append((*size.tolist(), float(friction.smoothing) if dry else None))
+    return (float(arm.a), float(arm.b), float(arm.d)), frictions
+
+
+def _runge_kutta(arm, frictions, x, v, tau, step):
+    a, b, d = arm
+    shoulder, elbow = map(float, tau)
+    half, sixth = 0.5 * step, step / 6
+
+    def acceleration(q2, v1, v2):
+        held1 = held2 = None
+        for size1, size2, smoothing in frictions:
+            if smoothing is None:
+                one, two = size1 * v1, size2 * v2
+            else:
+                one, two = size1 * math.tanh(v1 / smoothing), size2 * math.tanh(v2 / smoothing)
+            held1, held2 = (one, two) if held1 is None else (held1 + one, held2 + two)
+        t1, t2 = (shoulder, elbow) if held1 is None else (shoulder - held1, elbow - held2)
+        c2, h = math.cos(q2), b * math.sin(q2)
+        r1, r2 = t1 + h * v2 * (2 * v1 + v2), t2 - h * v1 * v1
+        m11, m12 = a + 2 * b * c2, d + b * c2
+        determinant = m11 * d - m12 * m12
+        return (d * r1 - m12 * r2) / determinant, (m11 * r2 - m12 * r1) / determinant
+
+    def moved(k, by):
+        return [at + by * rate for at, rate in zip(start, k)]
+
+    def rates(state):
+        _, q2, v1, v2 = state
+        return v1, v2, *acceleration(q2, v1, v2)
+
+    start = [*x.tolist(), *v.tolist()]
+    k1 = rates(start)
+    k2 = rates(moved(k1, half))
+    k3 = rates(moved(k2, half))
+    k4 = rates(moved(k3, step))
+    each = zip(start, k1, k2, k3, k4)
+    end = [at + sixth * (one + 2 * two + 2 * three + four) for at, one, two, three, four in each]
+    return np.array(end[:2]), np.array(end[2:])
 
 
 def start() -> None:

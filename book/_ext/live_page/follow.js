@@ -1,14 +1,19 @@
 // *Run this page*: which cells follow from which, by the names that they share.
 //
 // A cell is { names: { reads, writes, perhaps, changes, imports, carries, alters, holds } } as
-// names.py tells; `altered`, once it ran, is what it did change in place.
+// names.py tells; once it ran, `altered` is what it did change in place, and `names.handled` those
+// of its names that are figures to handle.
 globalThis.follow = (() => {
   const has = (list, name) => list?.includes(name) ?? false;
   const gives = ({ names }, name) => has(names.writes, name) || has(names.perhaps, name);
 
   // For each cell: the cells above that each name comes from, and what it may change in place.
   function graph(cells) {
-    const found = cells.map(() => ({ from: new Map(), changes: new Set() }));
+    const found = cells.map(({ names }) => ({
+      from: new Map(),
+      changes: new Set(),
+      handled: new Set(names.handled),
+    }));
 
     // Up to the last cell that binds the name whatever happens; the nearest comes first.
     function above(place, name) {
@@ -77,11 +82,12 @@ globalThis.follow = (() => {
   }
 
   // A cell above that has to run again before a cell can: its object was changed in place since,
-  // by that cell itself or by one below it. `turn` tells when cells ran in this worker.
+  // by that cell itself or by one below it. `turn` tells when cells ran in this worker. A figure
+  // to handle stays as the reader left it.
   function spoiled(found, place, turn) {
     for (const [name, list] of found[place].from) {
       const maker = list.at(-1);
-      if (maker === undefined || !turn[maker]) continue;
+      if (maker === undefined || !turn[maker] || found[maker].handled.has(name)) continue;
       for (let k = place; k < found.length; k++) {
         const same = found[k].changes.has(name) && found[k].from.get(name)?.at(-1) === maker;
         if (same && turn[k] > turn[maker]) return { maker, name };

@@ -32,6 +32,8 @@ made: dict[str, dict] = {}  # what each cell gave to names when it ran last
 known: dict[str, Names] = {}
 blocked: set[str] = set()  # names that a cell would have made which cannot run here
 emitting = None  # what shows something below the cell that runs
+drawn: dict[str, tuple] = {}  # cells above, and figures shown without their narrow forms
+leaving: list | None = None  # those of the cell that runs, if it leaves narrow forms for later
 page = None  # `page(text, buffers)` tells the widgets of the page something; the worker sets it
 
 
@@ -59,13 +61,16 @@ class Stream:
         return False
 
 
-async def run(source: str, name: str, emit, fetch, above=None, keep=True, quiet=False) -> bool:
+async def run(
+    source: str, name: str, emit, fetch, above=None, keep=True, quiet=False, wide=False
+) -> bool:
     """Run a cell; whether it ran through.
 
     `emit(kind, text)` shows something; `await fetch(package)` gets a package, and tells whether
     there is one of that name. With the names of the cells `above`, it finds what these gave, in
     their order, and nothing else. What it gives itself is not kept without `keep`, and what it
-    shows is not shown if it is `quiet`, unless it does not run through.
+    shows is not shown if it is `quiet`, unless it does not run through. On a `wide` page figures
+    come without their forms for a narrow one, until `forms` is asked for these.
     """
     if above is not None:
         _stand(above)
@@ -87,6 +92,10 @@ async def run(source: str, name: str, emit, fetch, above=None, keep=True, quiet=
     if quiet:
         emit = _only_problems(emit)
     Progress.emit, Progress.last = emit, 0.0
+    global leaving
+    leaving = [] if quiet or (wide and keep) else None
+    if not quiet:
+        drawn[name] = [*(above or ()), name], [] if leaving is None else leaving
     try:
         return await _until_it_runs(tree, name, emit, fetch)
     finally:
@@ -98,7 +107,14 @@ async def run(source: str, name: str, emit, fetch, above=None, keep=True, quiet=
             told = {n: footprint(value) for n, value in made[name].items() if value is not GONE}
             same = {n for n, seen in prints.items() if seen and seen == footprint(before[n])}
             altered = sorted((altered & before.keys()) - same)
-            loud("names", json.dumps({**found.told(), "prints": told, "altered": altered}))
+            more = {"prints": told, "altered": altered, "handled": _handled(made[name])}
+            loud("names", json.dumps({**found.told(), **more}))
+
+
+def _handled(values: dict) -> list[str]:
+    """Names of widgets: they change by hand, and nothing has to make them again for that."""
+    widgets = sys.modules.get("anywidget")
+    return sorted(n for n, v in values.items() if widgets and isinstance(v, widgets.AnyWidget))
 
 
 def _stand(above) -> None:
@@ -222,6 +238,8 @@ async def _until_it_runs(tree, name: str, emit, fetch) -> bool:
             package = _missing(error)
             if package not in tried and await _got(package, fetch):
                 tried.add(package)
+                if leaving:
+                    leaving.clear()
                 emit("again", "")
                 continue
             _tell(error, tree, name, emit)
@@ -299,6 +317,9 @@ def show(value, emit) -> None:
     widgets = sys.modules.get("anywidget")
     if widgets and isinstance(value, widgets.AnyWidget):
         return emit("widget", str(value.show()))
+    if leaving is not None and hasattr(type(value), "narrow"):  # it is drawn when it is asked for
+        leaving.append(value)
+        return emit("figure", f'<div class="ddlib-figure">{value.svg}</div>')
     for kind in ("html", "svg", "latex", "markdown"):
         told = getattr(value, f"_repr_{kind}_", None)
         text = told() if told and not isinstance(value, type) else None
@@ -309,6 +330,16 @@ def show(value, emit) -> None:
     emit("text", f"{value!r}\n")
 
 
+def forms(emit) -> None:
+    """Tell `emit(cell, number, text)` of the shown figures with their forms for a narrow page."""
+    for name, (cells, figures) in drawn.items():
+        _stand(cells)  # a figure's function finds the names of its cell
+        for number, figure in enumerate(figures):
+            with suppress(Exception):  # the wide one stays
+                emit(name, number, figure._repr_html_())
+    drawn.clear()
+
+
 def display(*values) -> None:
     """Show values below the cell that runs."""
     sys.stdout.flush()  # what was printed comes first
@@ -317,21 +348,19 @@ def display(*values) -> None:
 
 
 def heard(text: str, buffers) -> str:
-    """Take what a widget of the page says; returns the names of the widget if it changed."""
+    """Take what a widget of the page says; returns the names of the widgets that this changed."""
     told = {"number": json.loads(text)["number"]}
     out = Stream(lambda _, said: page(json.dumps({**told, "said": said}), []), "text")
-    widget = None
+    moved = []
     with redirect_stdout(out), redirect_stderr(out):
         try:
-            widget = sys.modules["anywidget"].heard(text, buffers)
+            moved = sys.modules["anywidget"].heard(text, buffers)
         except Exception as error:
             out.write(f"{type(error).__name__}: {error}\n")
     out.flush()
     page(json.dumps({**told, "applied": True}), [])
-    if widget is None:
-        return "[]"
-    each = [*made.values(), space]
-    return json.dumps(sorted({n for one in each for n, value in one.items() if value is widget}))
+    given = (each for one in (*made.values(), space) for each in one.items())
+    return json.dumps(sorted({n for n, value in given if any(value is w for w in moved)}))
 
 
 def _svg(figure) -> str:

@@ -540,8 +540,8 @@
       if (last?.classList.contains(`live-${kind}`)) last.firstChild.append(text);
       else place.append(printed(text, kind));
       if (kind === "text") cell.said = (cell.said ?? "") + text;
-    } else if (kind === "html") {
-      const el = make("div", { class: "output text_html" });
+    } else if (kind === "html" || kind === "figure") {
+      const el = make("div", { class: `output text_html ${kind === "figure" ? "live-wide" : ""}` });
       el.innerHTML = text;
       place.append(el);
     } else if (kind === "markdown" || kind === "latex") {
@@ -631,8 +631,19 @@
     else if (running) say(`Running ${running.name}: loading what it imports …`);
   }
 
+  // On a wide page a figure comes at once, in this form alone; the narrow one comes if it is needed.
+  const slim = matchMedia("(max-width: 600px)"); // as in the book's style sheet
+  slim.addEventListener("change", () => slim.matches && worker?.postMessage({ forms: true }));
+
+  function inBoth({ form, number, text }) {
+    const cell = cells.flatMap((c) => [c, c.beside]).find((c) => c?.name === form);
+    const el = cell?.told.querySelectorAll(".live-wide")[number];
+    if (el) el.innerHTML = text;
+  }
+
   function heard(message) {
-    if (message.widget) withHost(() => host.heard(message.widget, message.buffers));
+    if (message.form) inBoth(message);
+    else if (message.widget) withHost(() => host.heard(message.widget, message.buffers));
     else if (message.bytes) {
       progress.hidden = ready && !running;
       advance(message.bytes);
@@ -659,7 +670,8 @@
     }
   }
 
-  // A figure was handled, and Python has its names: cells that take them follow.
+  // A figure was handled, and Python has its names: cells that take them follow, but for those that
+  // set it themselves, which would undo what the reader did.
   function moved(names) {
     const graph = follow.graph(cells);
     for (const name of names)
@@ -667,7 +679,8 @@
         const { names: own } = cell;
         if (!own.writes?.includes(name) && !own.perhaps?.includes(name)) continue;
         for (const k of follow.readers(cells, graph, cell.place, new Set([name])))
-          if (cells[k].kind !== "answer" && cells[k] !== running) cells[k].stale = true;
+          if (cells[k].kind !== "answer" && cells[k] !== running && !graph[k].changes.has(name))
+            cells[k].stale = true;
       }
     mark();
     clearTimeout(timer);
@@ -750,7 +763,7 @@
     say(`Running ${cell.name} of ${cells.length} …`);
     host?.flush();
     const above = cells.slice(0, cell.place).filter((c) => c.turn).map((c) => c.name);
-    const how = { keep: !cell.extra, quiet: cell.quiet };
+    const how = { keep: !cell.extra, quiet: cell.quiet, wide: !slim.matches };
     worker.postMessage({ run: cell.name, source: cell.sent, above, how });
     if (interrupts) interrupts[0] = 0;
     const mine = worker; // an idle worker answers at once: or it is no more

@@ -102,8 +102,9 @@ self.onmessage = ({ data }) => {
   else last = last.then(() => act(data));
 };
 
-async function act({ start: data, interrupts, run, source, above, how, widget, buffers }) {
+async function act({ start: data, interrupts, run, source, above, how, widget, buffers, forms }) {
   try {
+    if (forms) return kernel.forms((cell, number, text) => tell({ form: cell, number, text }));
     if (widget) {
       const names = JSON.parse(kernel.heard(widget, buffers));
       return names.length && tell({ kind: "moved", names });

@@ -110,13 +110,14 @@ def _plain(value):
     return value.tolist()
 
 
-def heard(text: str, buffers) -> AnyWidget | None:
-    """Take a message of the page; returns the widget if that changed its traits."""
+def heard(text: str, buffers) -> list[AnyWidget]:
+    """Take a message of the page; returns the widgets whose traits that changed."""
     told = json.loads(text)
     widget = shown.get(told["number"])
     if widget is None:
-        return None
-    widget._moved.clear()
+        return []
+    for each in shown.values():  # one may be linked to another
+        each._moved.clear()
     parts = [bytes(part.to_py() if hasattr(part, "to_py") else part) for part in buffers]
     if "closed" in told:
         widget.close()
@@ -125,4 +126,4 @@ def heard(text: str, buffers) -> AnyWidget | None:
             callback(widget, told["content"], parts)
     else:
         widget.hear(told["state"] | dict(zip(told["binary"], parts)))
-    return widget if widget._moved else None
+    return [each for each in shown.values() if each._moved]
