@@ -17,6 +17,8 @@ STRIP  := $(BIN)/python -m nbstripout --keep-id --extra-keys "metadata.language_
 NOTEBOOKS = book/*.ipynb book/evidence/*.ipynb
 # Small matrices: a second thread would only wait, and so would the other process.
 PYTEST := OMP_NUM_THREADS=1 $(BIN)/python -m pytest
+# The end of a long run lists the tests that took longest.
+SLOWEST := --durations=30 --durations-min=5
 # Python that finds the workshop, wherever it goes from here.
 WORKSHOP := PYTHONPATH="$$PWD/book$${PYTHONPATH:+:$$PYTHONPATH}" $(BIN)/python
 
@@ -77,7 +79,7 @@ stripped: $(READY)
 
 unit: $(READY)
 	@echo "==> Unit and property tests"
-	$(PYTEST) -n $(JOBS) --dist worksteal -m "not built and not browser"
+	$(PYTEST) -n $(JOBS) --dist worksteal $(SLOWEST) -m "not built and not browser"
 
 notebooks: $(READY)  ## every notebook in a fresh process, warnings are errors
 	@echo "==> Every notebook in a fresh process, warnings are errors"
@@ -97,7 +99,7 @@ PAGE_TESTS = $(shell grep -rlE "mark\.(browser|built)\b" tests --include="test_*
 pages: $(READY)
 	@$(BIN)/python book/_ext/build.py --strict
 	@echo "==> The built pages"
-	$(PYTEST) -n $(JOBS) --dist worksteal -m "built or browser" $(PAGE_TESTS) || { \
+	$(PYTEST) -n $(JOBS) --dist worksteal $(SLOWEST) -m "built or browser" $(PAGE_TESTS) || { \
 	  echo "==> What failed, once more and alone: a busy machine can delay a browser" && \
 	  $(PYTEST) --last-failed --last-failed-no-failures none $(PAGE_TESTS); }
 

@@ -43,11 +43,20 @@ def planted_members(monkeypatch):
 
 
 @pytest.fixture(scope="session")
-def browser():
+def playwright():
+    """What drives browsers; there can be one of it."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as running:
+        yield running
+
+
+@pytest.fixture(scope="session")
+def browser(request):
     """A headless Chromium. Without one the test is skipped, or fails under CI=true."""
     if chromium.find() is None:
         (pytest.fail if CI else pytest.skip)(chromium.HOW_TO_GET_ONE)
-    with chromium.launch() as running:
+    with chromium.launched(request.getfixturevalue("playwright")) as running:
         yield running
 
 

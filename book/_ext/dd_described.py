@@ -7,14 +7,27 @@ metadata, as ``mystnb: figure: alt``, so that open code stays short; a page's fi
 from __future__ import annotations
 
 import json
-import re
 from html import escape
 from pathlib import Path
 
 from docutils import nodes
+from rewriter import Rewriter
 from sphinx.transforms import SphinxTransform
 
-NAME = re.compile(r'(<svg [^>]*?aria-label="[^"]*)')
+
+class Pictures(Rewriter):
+    """The SVG pictures of some markup, whose names get more words."""
+
+    def __init__(self, text: str, words: str):
+        self.words = words
+        super().__init__(text)
+
+    def handle_starttag(self, name, attributes):
+        before, label, after = self.get_starttag_text().partition(' aria-label="')
+        if name == "svg" and label:
+            told, _, after = after.partition('"')
+            new = f'{before}{label}{told} {escape(self.words)}"{after}'
+            self.change(self.start, self.end, new)
 
 
 def described(path: Path) -> dict[str, str]:
@@ -26,7 +39,7 @@ def described(path: Path) -> dict[str, str]:
 
 def with_words(text: str, alt: str) -> str:
     """The markup of a figure, in all its forms, with more words in its name."""
-    return NAME.sub(lambda found: f"{found[1]} {escape(alt, quote=True)}", text)
+    return Pictures(text, alt).changed()
 
 
 class Describe(SphinxTransform):

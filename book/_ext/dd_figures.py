@@ -10,7 +10,6 @@ that says how large that is.
 from __future__ import annotations
 
 import base64
-import html
 import re
 import tempfile
 import zipfile
@@ -18,6 +17,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
+from xml.etree import ElementTree
 
 import dd_teaching
 from dd_reader import Known
@@ -29,9 +29,7 @@ from ddlib.figures.style import Illustration
 from workshop.chapters import PNG
 
 NAME = "figures-{}.zip"
-SVG = re.compile(r'<div class="(?:ddlib-figure|wide)">(<svg .*?</svg>)', re.DOTALL)
 ROLE = re.compile(r"\{[\w:-]+\}`([^`]*)`")
-ALT = re.compile(r'aria-label="([^"]*)"')
 AS_EVER = (1988, 8, 1, 0, 0, 0)  # so that the same figures make the same archive
 
 
@@ -58,11 +56,19 @@ def figures(cells: list[dict]) -> Iterator[Kept]:
     for cell in cells:
         told = cell["metadata"].get("mystnb", {}).get("figure")
         for output in cell.get("outputs", ()) if told else ():
-            found = SVG.search("".join(output.get("data", {}).get("text/html", "")))
-            if found:
+            svg = wide_form("".join(output.get("data", {}).get("text/html", "")))
+            if svg:
                 png = output.get("metadata", {}).get("text/html", {}).get(PNG, "")
-                alt = f"{html.unescape(ALT.search(found[1])[1])} {told.get('alt', '')}".strip()
-                yield Kept(told["name"], told["caption"], found[1], alt, base64.b64decode(png))
+                alt = ElementTree.fromstring(svg).attrib["aria-label"]
+                alt = f"{alt} {told.get('alt', '')}".strip()
+                yield Kept(told["name"], told["caption"], svg, alt, base64.b64decode(png))
+
+
+def wide_form(markup: str) -> str:
+    """The SVG of an `Illustration` as a page shows it, without its narrow form; of no other."""
+    start, end = markup.find("<svg "), markup.find("</svg>")
+    is_figure = markup.startswith('<div class="ddlib-figure') and end > start
+    return markup[start : end + len("</svg>")] if is_figure else ""
 
 
 def archive_of(name: str) -> str:

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import json
 import posixpath
-import re
 from pathlib import Path
 
 import yaml
+from docutils import nodes
 
 OLD = Path(__file__).with_name("old_anchors.yml")
 PAGES = {  # and evidence-NAME: evidence/NAME
@@ -26,7 +26,6 @@ STUB = (
     '<script>location.replace("{0}" + location.hash)</script>'
     '<meta http-equiv="refresh" content="1; url={0}"><p>This page is now <a href="{0}">here</a>.'
 )
-ID = re.compile(r'\bid="([^"]+)"')
 EMPTY = "const MOVED = {};"
 
 
@@ -37,9 +36,17 @@ def pages(found: set[str]) -> dict[str, str]:
     return moved | {old: new for old, new in PAGES.items() if new in found}
 
 
-def sections(out: Path, found: list[str]) -> dict[str, dict[str, list[str]]]:
-    """For each old page its sections that stand on another page now, by that page."""
-    ids = {page: ID.findall((out / f"{page}.html").read_text(encoding="utf-8")) for page in found}
+def gather(app, doctree, page):
+    """Keep the names of a page's sections and figures in Sphinx's environment until `write`."""
+    names = {name for node in doctree.findall(nodes.Element) for name in node.get("ids", ())}
+    app.env.dd_moved_names = {**getattr(app.env, "dd_moved_names", {}), page: names}
+
+
+def sections(ids: dict[str, set[str]], found: list[str]) -> dict[str, dict[str, list[str]]]:
+    """For each old page its sections that stand on another page now, by that page.
+
+    `ids` are those of each page, and `found` are the pages in the order of the contents.
+    """
     moved: dict[str, dict[str, list[str]]] = {}
     for name, anchors in yaml.safe_load(OLD.read_text(encoding="utf-8")).items():
         own = f"book/{name}"
@@ -60,11 +67,13 @@ def write(app, exception):
         address = posixpath.relpath(f"{new}.html", posixpath.dirname(old))
         (out / f"{old}.html").write_text(STUB.format(address), encoding="utf-8")
     script = out / "_static" / "moved.js"
-    told = json.dumps(sections(out, found), separators=(",", ":"))
+    names = getattr(app.env, "dd_moved_names", {})
+    told = json.dumps(sections(names, found), separators=(",", ":"))
     text = script.read_text(encoding="utf-8").replace(EMPTY, f"const MOVED = {told};")
     script.write_text(text, encoding="utf-8")
 
 
 def setup(app):
+    app.connect("doctree-resolved", gather, priority=900)
     app.connect("build-finished", write, priority=901)  # after pages are slim
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -5,13 +5,14 @@
 
 from __future__ import annotations
 
-import html
-import re
 import shutil
 import sys
 import zipfile
+from html import escape
 from pathlib import Path
+from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
+from xml.dom import minidom
 
 import pdf
 from offers import offer
@@ -23,101 +24,100 @@ CONTAINER = """<?xml version="1.0"?>
 <container version="1.0" xmlns="urn:oasis:names:tc:opendocument:xmlns:container"><rootfiles>
 <rootfile full-path="book/content.opf" media-type="application/oebps-package+xml"/>
 </rootfiles></container>"""
-PAGE = """<?xml version="1.0" encoding="utf-8"?>
-<!DOCTYPE html>
-<html xmlns="http://www.w3.org/1999/xhtml" xmlns:epub="http://www.idpf.org/2007/ops" lang="en"
-xml:lang="en"><head><title>{title}</title><link rel="stylesheet" href="look.css"/></head>
-<body>{body}</body></html>"""
 KINDS = {".svg": "image/svg+xml", ".png": "image/png", ".jpg": "image/jpeg"}
 SOLUTIONS = "solutions"
+XHTML = "http://www.w3.org/1999/xhtml"
+NEEDLESS = ("aria-live", "aria-activedescendant", "for", "loading", "target", "rel")
+"""Attributes of no use in a book, beside all that begin with ``data-``."""
 
 
-def tidy(text: str, files: dict[str, str]) -> str:
-    """XML of a page with links into the files of the book; `files` says where an id is."""
+class Page(NamedTuple):
+    """A file of the book: its name without ending, its title, its body as XML."""
 
-    def led(found: re.Match) -> str:
-        where = files.get(found[1])
-        return f'href="{where}.xhtml#{found[1]}"' if where else ""
+    name: str
+    title: str
+    body: str
 
-    text = re.sub(r'(?<!xlink:)href="#([^"]+)"', led, text)
-    text = re.sub(r'<a [^>]*class="see"[^>]*>[^<]*</a>', "", text)  # there are no pages
-    text = re.sub(
-        r' (?:data-[\w-]+|aria-live|aria-activedescendant|for|loading|target|rel)="[^"]*"', "", text
-    )
-    text = re.sub(r'(<svg\b[^>]*?) role="(?!img)[^"]*"', r"\1", text)
-    text = re.sub(r"<(/?)mjx-[\w-]+[^>]*>", r"<\1span>", text)
-    return re.sub(r' xmlns="http://www.w3.org/1999/xhtml"', "", text)
+    @property
+    def has(self) -> str:
+        """What the manifest has to say of it."""
+        return " ".join(
+            what for what, tag in (("mathml", "<math"), ("svg", "<svg")) if tag in self.body
+        )
 
 
-def places(found: list[dict]) -> dict[str, str]:
-    """The file in which each id stands."""
-    at = {}
-    for one in found:
-        name = one["name"].removeprefix("book/")
-        at |= dict.fromkeys(re.findall(r'\bid="([^"]+)"', one["body"]), name)
-        at |= dict.fromkeys(re.findall(r'\bid="([^"]+)"', one["solutions"]), SOLUTIONS)
-    return at
+def parsed(body: str) -> minidom.Element:
+    """What a page holds, as the elements of one; `take.js` writes XML."""
+    return minidom.parseString(f'<body xmlns="{XHTML}">{body}</body>').documentElement
 
 
-def pictures(text: str, kept: dict[str, Path]) -> str:
-    """Texts with pictures of the book's own; `kept` gathers them."""
-
-    def mine(found: re.Match) -> str:
-        path = Path(unquote(urlsplit(html.unescape(found[1])).path))
-        kept[path.name] = path
-        return f'src="images/{path.name}"'
-
-    return re.sub(r'src="(file:[^"]+)"', mine, text)
+def elements(body: minidom.Element) -> list[minidom.Element]:
+    return body.getElementsByTagName("*")
 
 
-def package(pages: dict[str, str], titles: dict[str, str], kept: dict[str, Path]) -> dict[str, str]:
-    """Manifest, reading order and navigation."""
-    kind = "application/xhtml+xml"
-    items = [
-        f'<item id="nav" href="nav.xhtml" media-type="{kind}" properties="nav"/>',
-        '<item id="look" href="look.css" media-type="text/css"/>',
-    ]
-    for name, text in pages.items():
-        has = [what for what, tag in (("mathml", "<math"), ("svg", "<svg")) if tag in text]
-        said = f' properties="{" ".join(has)}"' if has else ""
-        items.append(f'<item id="p-{name}" href="{name}.xhtml" media-type="{kind}"{said}/>')
-    for k, name in enumerate(kept):
-        kind = KINDS[Path(name).suffix]
-        items.append(f'<item id="i-{k}" href="images/{name}" media-type="{kind}"/>')
-    spine = "".join(f'<itemref idref="p-{name}"/>' for name in pages)
-    package = f"""<?xml version="1.0" encoding="utf-8"?>
-<package xmlns="http://www.idpf.org/2007/opf" version="3.0" unique-identifier="id" xml:lang="en">
-<metadata xmlns:dc="http://purl.org/dc/elements/1.1/"><dc:identifier id="id">urn:x-ddlib:walk
-</dc:identifier><dc:title>{TITLE}</dc:title><dc:language>en</dc:language>
-<dc:creator>The ddlib authors</dc:creator><dc:rights>CC BY 4.0</dc:rights>
-<meta property="dcterms:modified">1988-08-01T00:00:00Z</meta></metadata>
-<manifest>{"".join(items)}</manifest><spine>{spine}</spine></package>"""
-    listed = "".join(f'<li><a href="{n}.xhtml">{html.escape(titles[n])}</a></li>' for n in pages)
-    nav = f'<nav epub:type="toc"><h1>Contents</h1><ol>{listed}</ol></nav>'
-    return {"content.opf": package, "nav.xhtml": PAGE.format(title="Contents", body=nav)}
+def places(bodies: list[tuple[str, minidom.Element]]) -> dict[str, str]:
+    """The file in which each id stands, from the names of files and what is in them."""
+    return {
+        element.getAttribute("id"): name
+        for name, body in bodies
+        for element in elements(body)
+        if element.hasAttribute("id")
+    }
+
+
+def tidy(body: minidom.Element, files: dict[str, str], kept: dict[str, Path]) -> str:
+    """XML of a page with links into the files of the book and with pictures of its own.
+
+    `files` says where an id is; `kept` gathers the pictures.
+    """
+    for element in elements(body):
+        name = element.tagName
+        if name == "a" and element.getAttribute("class") == "see":  # there are no pages
+            element.parentNode.removeChild(element)
+        for attribute in list(element.attributes.keys()):
+            value = element.getAttribute(attribute)
+            if attribute.startswith("data-") or attribute in NEEDLESS:
+                element.removeAttribute(attribute)
+            elif attribute == "href" and value.startswith("#"):
+                element.removeAttribute("href")
+                if where := files.get(value[1:]):
+                    element.setAttribute("href", f"{where}.xhtml{value}")
+            elif attribute == "src" and value.startswith("file:"):
+                path = Path(unquote(urlsplit(value).path))
+                kept[path.name] = path
+                element.setAttribute("src", f"images/{path.name}")
+            elif (attribute, value) == ("xmlns", XHTML):  # the page says it
+                element.removeAttribute("xmlns")
+            elif attribute == "role" and name == "svg" and not value.startswith("img"):
+                element.removeAttribute("role")
+        if name.startswith("mjx-"):
+            element.tagName = element.nodeName = "span"
+    return "".join(node.toxml() for node in body.childNodes)
 
 
 def make(found: list[dict], path: Path) -> None:
     """Write the book, whole or not at all."""
-    files, kept = places(found), {}
-    pages, titles = {}, {}
-    for one in found:
-        name = one["name"].removeprefix("book/")
-        titles[name] = one["title"]
-        pages[name] = PAGE.format(
-            title=html.escape(one["title"]), body=tidy(pictures(one["body"], kept), files)
-        )
-    solved = [
-        f"<h2>{html.escape(one['title'])}</h2>{tidy(pictures(one['solutions'], kept), files)}"
-        for one in found
-        if one["solutions"]
+    names = [one["name"].removeprefix("book/") for one in found]
+    bodies = {name: parsed(one["body"]) for name, one in zip(names, found)}
+    solved = [(one["title"], parsed(one["solutions"])) for one in found if one["solutions"]]
+    files = places([*bodies.items(), *((SOLUTIONS, body) for _, body in solved)])
+    kept: dict[str, Path] = {}
+    pages = [
+        Page(name, one["title"], tidy(bodies[name], files, kept)) for name, one in zip(names, found)
     ]
-    titles[SOLUTIONS] = "Solutions"
-    body = f"<h1>Solutions</h1>{''.join(solved)}"
-    pages[SOLUTIONS] = PAGE.format(title="Solutions", body=body)
-    look = (pdf.HERE / "epub.css").read_text(encoding="utf-8")
-    texts = {f"{name}.xhtml": text for name, text in pages.items()}
-    texts |= {"look.css": look} | package(pages, titles, kept)
+    answers = "".join(
+        f"<h2>{escape(title)}</h2>{tidy(body, files, kept)}" for title, body in solved
+    )
+    pages.append(Page(SOLUTIONS, "Solutions", f"<h1>Solutions</h1>{answers}"))
+    images = {name: KINDS[Path(name).suffix] for name in kept}
+    page = pdf.template("page.xhtml").render
+    nav = pdf.template("nav.xhtml").render(pages=pages)
+    texts = {f"{one.name}.xhtml": page(title=one.title, body=one.body) for one in pages}
+    texts["look.css"] = (pdf.HERE / "epub.css").read_text(encoding="utf-8")
+    texts["content.opf"] = pdf.template("content.opf").render(
+        title=TITLE, pages=pages, images=images
+    )
+    texts["nav.xhtml"] = page(title="Contents", body=nav)
     new = path.with_suffix(".new")
     with zipfile.ZipFile(new, "w") as archive:
         archive.writestr(zipfile.ZipInfo("mimetype", STAMP), "application/epub+zip")

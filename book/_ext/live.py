@@ -47,6 +47,7 @@ VERSION = "314.0.3"
 TARBALL = "sK40My6m8tmBUYtYH9au9rXUeh9x0wfahtHdOlGmJxZDsKBGKtP6KznyFB2+u/klbQTdDionR0uaVd176zVQzQ=="
 CORE = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip")
 LOCK = "pyodide-lock.json"
+CODES = ("code ", "errno ", "syscall ")  # what npm says before it says why
 PUBLIC = f"https://cdn.jsdelivr.net/pyodide/v{VERSION}/full"  # where Pyodide keeps its wheels
 WHEELS = ("numpy", "scipy", "sympy", "matplotlib", "pandas")  # and what these depend on
 PURE = {"lazy-loader": [], "traitlets": [], "control": ["numpy", "scipy", "matplotlib"]}
@@ -142,12 +143,17 @@ def core(kept: Path) -> None:
     if npm is None:
         raise Refused("npm is missing: Pyodide's core comes by it (https://nodejs.org)")
     kept.mkdir(parents=True, exist_ok=True)
-    made = subprocess.run(
-        [npm, "pack", "--silent", f"pyodide@{VERSION}"], cwd=kept, capture_output=True, text=True
-    )
+    asked = [npm, "pack", "--loglevel=error", "--fetch-retries=1", f"pyodide@{VERSION}"]
+    made = subprocess.run(asked, cwd=kept, capture_output=True, text=True)
     archive = kept / f"pyodide-{VERSION}.tgz"
     if made.returncode or not archive.is_file():
-        raise Refused(f"npm pack pyodide@{VERSION}: {made.stderr.strip() or 'nothing came'}")
+        said = [line.removeprefix("npm error ") for line in made.stderr.splitlines()]
+        why = next((line for line in said if " " in line and not line.startswith(CODES)), "no file")
+        raise Refused(
+            f"no core of Pyodide {VERSION}, which npm's registry has: npm pack pyodide@{VERSION} "
+            f"ended with “{why}”. Try again with a way to it (npm config get registry); wheels "
+            f"come from MIRROR= or {PUBLIC}."
+        )
     if base64.b64encode(hashlib.sha512(archive.read_bytes()).digest()).decode() != TARBALL:
         archive.unlink()
         raise Refused(f"pyodide {VERSION} of npm is not the archive with SHA-512 {TARBALL}")

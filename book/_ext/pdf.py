@@ -7,12 +7,13 @@ that the first one gave to contents, references and index. Solutions stand at th
 
 from __future__ import annotations
 
-import html
 import io
 import re
 import shutil
 import sys
 from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import yaml
@@ -20,6 +21,8 @@ import yaml
 sys.path.append(str(Path(__file__).parents[2] / "tests" / "support"))  # how a browser is found
 import chromium
 from dd_public import repository, site
+from jinja2 import Environment, FileSystemLoader, Template
+from markupsafe import Markup
 from offers import offer
 from tqdm import tqdm
 
@@ -77,74 +80,43 @@ def taken(browser, built: Path, parts, progress, book: bool = False) -> list[dic
     return found
 
 
-def filled(text: str, numbers: dict[str, int]) -> str:
-    """Page numbers where `data-page` asks for them; three zeros hold the place before."""
-    return re.sub(
-        r'(<[^>]+ data-page="([^"]+)"[^>]*>)[^<]*',
-        lambda m: f"{m[1]}{numbers.get(m[2], 0) or '000'}",
-        text,
+def quoted(text: str) -> Markup:
+    """A text as style sheets quote one."""
+    return Markup('"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"')
+
+
+def template(name: str) -> Template:
+    """A template of `HERE`; what it is given is escaped, but for what it calls safe."""
+    home = Environment(
+        loader=FileSystemLoader(HERE), autoescape=True, trim_blocks=True, lstrip_blocks=True
     )
+    home.filters["quoted"] = quoted
+    return home.get_template(f"{name}.jinja")
 
 
 def joined(volume: str, found: list[dict]) -> str:
-    """A volume as one HTML document."""
-    styles = dict.fromkeys(style for one in found for style in one["styles"])
-    rules, body, listed, part = [], [], [], None
-    for k, one in enumerate(found):
-        if one["part"] != part:
-            part = one["part"]
-            if part not in UNANNOUNCED:
-                body.append(f'<section class="part"><h1>{html.escape(part)}</h1></section>')
-            listed.append(f'<li class="part">{html.escape(part)}</li>')
-        rules.append(f"@page c{k} {{ @top-left {{ content: {_quoted(one['title'])}; }} }}")
-        anchor, title = one["anchor"], html.escape(one["title"])
-        body.append(f'<section class="chapter" style="page: c{k}">{one["body"]}</section>')
-        listed.append(f'<li><a href="#{anchor}">{title}</a>{_page(anchor)}</li>')
-    solved = [one for one in found if one["solutions"]]
-    if solved:
-        rules.append('@page solved { @top-left { content: "Solutions"; } }')
-        body.append(
-            '<section class="chapter" style="page: solved" id="solutions"><h1>Solutions</h1>'
-        )
-        body += [f"<h2>{html.escape(one['title'])}</h2>{one['solutions']}" for one in solved]
-        body.append("</section>")
-        listed.append(f'<li><a href="#solutions">Solutions</a>{_page("solutions")}</li>')
-    if entries := index(found):
-        rules.append('@page index { @top-left { content: "Index"; } }')
-        body.append('<section class="chapter" style="page: index" id="index"><h1>Index</h1>')
-        body.append(f'<ul class="index">{entries}</ul></section>')
-        listed.append(f'<li><a href="#index">Index</a>{_page("index")}</li>')
-    look = (HERE / "volume.css").read_text(encoding="utf-8")
-    return (
-        f'<!doctype html><html lang="en" data-theme="light"><head><meta charset="utf-8">'
-        f"<title>{TITLE}: {VOLUMES[volume].lower()}</title>{''.join(styles)}"
-        f"<style>{look}\n{' '.join(rules)}</style></head><body><main class='bd-article volume'>"
-        f'<section class="front"><p class="title">{TITLE}</p><p>{VOLUMES[volume]}</p>'
-        f"<p>The ddlib authors</p><p>{site(repository()) if repository() else ''}</p></section>"
-        f'<section class="contents"><h1>Contents</h1><ul>{"".join(listed)}</ul></section>'
-        f"{''.join(body)}</main></body></html>"
+    """A volume as one HTML document; three zeros hold the places of its page numbers."""
+    return template("volume.html").render(
+        title=TITLE,
+        name=VOLUMES[volume],
+        address=site(repository()) if repository() else "",
+        styles=dict.fromkeys(style for one in found for style in one["styles"]),
+        look=(HERE / "volume.css").read_text(encoding="utf-8"),
+        chapters=found,
+        unannounced=UNANNOUNCED,
+        solved=[one for one in found if one["solutions"]],
+        entries=index(found),
     )
 
 
-def _quoted(text: str) -> str:
-    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
-
-
-def _page(anchor: str) -> str:
-    return f'<a class="at" href="#{anchor}" data-page="{anchor}">000</a>'
-
-
-def index(found: list[dict]) -> str:
-    """Words, each with the pages where a chapter has it first."""
+def index(found: list[dict]) -> list[tuple[str, list[str]]]:
+    """Words, each with where a chapter has it first."""
     places: dict[str, list[str]] = {}
     for one in found:
         for word, anchor in one["terms"]:
             places.setdefault(word, []).append(anchor)
-    return "".join(
-        f"<li>{html.escape(word)} {' '.join(_page(anchor) for anchor in anchors)}</li>"
-        for word, anchors in sorted(places.items(), key=lambda pair: pair[0].lower())
-        if len(anchors) <= MOST_PLACES
-    )
+    words = sorted(places, key=str.lower)
+    return [(word, places[word]) for word in words if len(places[word]) <= MOST_PLACES]
 
 
 def numbers(pdf: bytes) -> dict[str, int]:
@@ -157,21 +129,6 @@ def numbers(pdf: bytes) -> dict[str, int]:
         name.lstrip("/"): 1 + reader.get_destination_page_number(place)
         for name, place in places.items()
     }
-
-
-def once_a_page(text: str, at: dict[str, int]) -> str:
-    """An index whose entries name each page once, and no place that was not printed."""
-
-    def thinned(found: re.Match) -> str:
-        seen = {0}
-        return re.sub(
-            r'<a class="at"[^>]* data-page="([^"]+)"[^>]*>[^<]*</a> ?',
-            lambda m: "" if at.get(m[1], 0) in seen or seen.add(at[m[1]]) else m[0],
-            found[0],
-        )
-
-    before, mark, after = text.partition('<ul class="index">')
-    return before + mark + re.sub(r"<li>.*?</li>", thinned, after, flags=re.S)
 
 
 def titled(entry, headings: list[str]) -> None:
@@ -191,14 +148,21 @@ def titled(entry, headings: list[str]) -> None:
         entry = entry.get("/Next")
 
 
-def printed(browser, path: Path) -> bytes:
+@contextmanager
+def opened(browser, path: Path) -> Iterator:
+    """A volume in a browser, to be printed; it is long."""
     page = browser.new_page()
     page.set_default_timeout(600_000)
     page.goto(path.as_uri())
     try:
-        return page.pdf(prefer_css_page_size=True, print_background=True, tagged=True, outline=True)
+        yield page
     finally:
         page.close()
+
+
+def printed(page) -> bytes:
+    """The PDF of a page."""
+    return page.pdf(prefer_css_page_size=True, print_background=True, tagged=True, outline=True)
 
 
 def make(built: Path, folder: Path, volume: str, browser) -> Path:
@@ -210,13 +174,12 @@ def make(built: Path, folder: Path, volume: str, browser) -> Path:
         text = joined(volume, taken(browser, built, parts, progress))
         draft = folder / f"{volume}.html"
         draft.write_text(text, encoding="utf-8")
-        at = numbers(printed(browser, draft))
-        progress.update()
-        draft.write_text(filled(once_a_page(text, at), at), encoding="utf-8")
-        writer = PdfWriter(clone_from=io.BytesIO(printed(browser, draft)))
-        headings = re.findall(r"<h[1-6][^>]*>(.*?)</h[1-6]>", text, re.S)
-        plain = [" ".join(html.unescape(re.sub("<[^>]+>", "", h)).split()) for h in headings]
-        titled(writer.root_object["/Outlines"].get_object().get("/First"), plain)
+        with opened(browser, draft) as page:
+            at = numbers(printed(page))
+            progress.update()
+            headings = page.evaluate((HERE / "fill.js").read_text(encoding="utf-8"), at)
+            writer = PdfWriter(clone_from=io.BytesIO(printed(page)))
+        titled(writer.root_object["/Outlines"].get_object().get("/First"), headings)
         writer.add_metadata({"/Title": f"{TITLE}: {VOLUMES[volume].lower()}",
                              "/Author": "The ddlib authors"})  # fmt: skip
         new, path = folder / f".{volume}.pdf", folder / f"{volume}.pdf"

@@ -101,6 +101,11 @@ def crate(cited: dict, made: list[Path]) -> dict:
     return {"@context": "https://w3id.org/ro/crate/1.1/context", "@graph": graph}
 
 
+def archive(site: Path, target: Path) -> None:
+    """A site as one file; unzipped and served by `python -m http.server`, it is whole."""
+    shutil.make_archive(str(target.with_suffix("")), "zip", site)
+
+
 def collect(root: Path, folder: Path) -> list[Path]:
     """Make the wheel and the sites' archives, copy the rest, sum them up; what is there then.
 
@@ -122,7 +127,7 @@ def collect(root: Path, folder: Path) -> list[Path]:
     wheel = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "-w", new.resolve(), "."]
     subprocess.run(wheel, check=True, cwd=root)  # brackets in a path would be extras to pip
     for name, pages in sites.items():
-        shutil.make_archive(str(new / f"{name}-{version}"), "zip", built / pages)
+        archive(built / pages, new / f"{name}-{version}.zip")
     for name, path in MADE.items():
         stem, dot, ending = name.rpartition(".")
         shutil.copyfile(built / path, new / f"{stem}-{version}{dot}{ending}")

@@ -8,7 +8,6 @@ left, so that the pages work under a content security policy of ``'self' 'unsafe
 from __future__ import annotations
 
 import hashlib
-import html
 import json
 import re
 import shutil
@@ -16,10 +15,12 @@ import urllib.parse
 import urllib.request
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 from fontTools.pens.svgPathPen import SVGPathPen
 from fontTools.pens.transformPen import TransformPen
 from fontTools.ttLib import TTFont
+from rewriter import Rewriter, tag
 
 ICON_FONT = "vendor/fontawesome/webfonts/fa-solid-900.ttf"
 UNUSED_FILES = ("vendor", "locales", "scripts/fontawesome.js*", "**/*.map", "*webpack-macros.html")
@@ -28,35 +29,13 @@ ICON_SCRIPT = "fontawesome.js"  # not needed: the icons are in the page
 SEARCH_SCRIPTS = {"searchtools.js", "language_data.js", "searchindex.js"}
 MATHS_SCRIPT = "tex-svg-full.js"
 
-TOGGLE = '<summary><span class="toctree-toggle"'  # in the contents: an icon without words
-FIELD = 'field search-button__button pst-js-only"'
-HEAD = (  # for the page that only leads to the first one: without an icon, browsers look for it
+REFRESH = '<meta http-equiv="Refresh"'  # how the page begins that only leads to the first one
+HEAD = (  # for that page: without an icon, browsers look for it
     '<!doctype html><html lang="en"><meta charset="utf-8"><title>To the first page</title>'
     '<link rel="icon" href="_static/favicon.svg">'
 )
-# What Sphinx, the theme and myst-nb write, and what assistive technology needs instead.
-REPAIRS = (
-    ('<div id="pst-primary-sidebar"', '<div id="pst-primary-sidebar" role="complementary"'),
-    ('role="doc-biblioentry"', 'role="listitem"'),  # that role is deprecated
-    ('<summary aria-label="Toggle hidden content">', "<summary>"),  # its text says more
-    (TOGGLE, TOGGLE.replace("<summary>", '<summary aria-label="Pages below this one">')),
-    ('field search-button__button pst-js-only" title="Search" aria-label="Search"', FIELD),
-    ('<table class="indextable', '<table role="presentation" class="indextable'),
-)
-
-SCROLLED = re.compile(
-    r'<div( class="pst-scrollable-table-container">\s*<table.*?</table>\s*)</div>', re.DOTALL
-)
-FORMULA = re.compile(r'<\w+ [^>]*class="[^"]*(?<![\w-])math(?![\w-])')
-ICON = re.compile(r'<(i|span) class="([^"]*\bfa-[^"]*)"([^>]*)>\s*</\1>')
-PRELOAD = re.compile(r'<link rel="preload" as="script"[^>]*>\n?')
-SCRIPT = re.compile(r'[ \t]*<script[^>]*\bsrc="[^"]*?([^/"?]+\.js)[^"]*"[^>]*></script>\n?')
-STATE = re.compile(
-    r'(?<=<script type="application/vnd\.jupyter\.widget-state\+json">).*?(?=</script>)', re.DOTALL
-)
-VIEW = re.compile(
-    r'<script type="application/vnd\.jupyter\.widget-view\+json">(.*?)</script>', re.DOTALL
-)
+SCROLLED = "pst-scrollable-table-container"
+WIDGETS = "application/vnd.jupyter.widget-"  # types of scripts: `WIDGETS` state or view, as JSON
 CSS_DATA = re.compile(r"""url\((?:"(data:(?:[^"\\]|\\.)*)"|(data:[^)]*))\)""")
 # Rules of single icons: `.fa-sun:before{content:"\\f185"}`, 1,900 of them.
 ICON_RULES = re.compile(r"(?<=[};])(?:\.fa-[\w.-]+(?::{1,2}\w+)?,?)+\{[^{}]*\}")
@@ -80,16 +59,10 @@ def slim(out: Path) -> None:
 
 def slim_page(text: str, icons: Icons, store) -> str:
     """A page without what it does not use, repaired for assistive technology."""
-    text = re.sub(r'\A(?=<meta http-equiv="Refresh")', HEAD, text)
-    for old, new in REPAIRS:
-        text = text.replace(old, new)
-    text = SCROLLED.sub(r"<section\1</section>", text)  # a div that scrolls has no role
-    text = ICON.sub(icons.inline, text)
-    text = PRELOAD.sub("", text)  # fails where scripts are off
-    unused = {ICON_SCRIPT} if 'id="search-results"' in text else {ICON_SCRIPT, *SEARCH_SCRIPTS}
-    unused |= set() if FORMULA.search(text) else {MATHS_SCRIPT}
-    text = SCRIPT.sub(lambda tag: "" if tag[1] in unused else tag[0], text)
-    return separate_stills(text, store)
+    page = Page(text, icons)
+    page.drop_scripts()
+    page.separate_stills(store)
+    return HEAD * text.startswith(REFRESH) + page.changed()
 
 
 class Icons:
@@ -98,40 +71,120 @@ class Icons:
     def __init__(self, path: Path):
         self.glyphs = TTFont(path).getGlyphSet()
 
-    def inline(self, tag: re.Match) -> str:
-        """The icon that an empty ``<i class="fa-solid fa-sun">`` stands for."""
-        found = [name[3:] for name in tag[2].split() if name[3:] in self.glyphs]
+    def inline(self, attributes: dict[str, str]) -> str:
+        """The icon that an ``<i class="fa-solid fa-sun">`` stands for, if the font has it."""
+        names = attributes["class"].split()
+        found = [name[3:] for name in names if name[3:] in self.glyphs]
         if not found:
-            return tag[0]
+            return ""
         glyph = self.glyphs[found[0]]
         pen = SVGPathPen(self.glyphs)
         glyph.draw(TransformPen(pen, (1, 0, 0, -1, 0, 448)))  # y downwards, from the top
-        mode = re.search(r'data-mode="\w+"', tag[3])
-        return (
-            f'<svg class="icon {" ".join(tag[2].split())}" {mode[0] if mode else ""} '
-            f'viewBox="0 0 {glyph.width:g} 512" aria-hidden="true">'
-            f'<path fill="currentColor" d="{pen.getCommands()}"/></svg>'
-        )
+        mode = {key: attributes[key] for key in ("data-mode",) if key in attributes}
+        box = {"viewBox": f"0 0 {glyph.width:g} 512", "aria-hidden": "true"}
+        svg = tag("svg", {"class": " ".join(["icon", *names]), **mode, **box})
+        return f'{svg}<path fill="currentColor" d="{pen.getCommands()}"/></svg>'
 
 
-def separate_stills(text: str, store) -> str:
-    """After each widget, its trait `still` as a picture for where there is no script.
+class Script(NamedTuple):
+    """A script of a page: where it stands in the text, and what it says."""
 
-    The picture becomes a file; what the trait held is no longer part of the page.
-    """
-    found = STATE.search(text)
-    if not found:
-        return text
-    saved = json.loads(found[0])
-    images = {}
-    for model, entry in saved["state"].items():
-        address = entry.get("state", {}).pop("still", "")
-        if address:
-            alt = html.escape(entry["state"].get("still_alt", ""))
-            image = f'<img class="still" src="{store(address)}" alt="{alt}">'
-            images[model] = f"<noscript>{image}</noscript>"
-    text = VIEW.sub(lambda view: view[0] + images.get(json.loads(view[1])["model_id"], ""), text)
-    return STATE.sub(lambda _: json.dumps(saved).replace("</", "<\\/"), text)
+    start: int
+    end: int
+    attributes: dict[str, str]
+    content: str
+
+    @property
+    def name(self) -> str:
+        """The name of its file; empty if it has none."""
+        return self.attributes.get("src", "").partition("?")[0].rpartition("/")[2]
+
+
+class Page(Rewriter):
+    """A page as Sphinx, the theme and myst-nb write it, with what it needs instead."""
+
+    def __init__(self, text: str, icons: Icons):
+        self.icons, self.scripts = icons, []
+        self.opened = {"div": [], "script": [], "summary": []}  # what stands open, by its name
+        self.has_formulas = self.has_results = False
+        super().__init__(text)
+
+    def handle_starttag(self, name, attributes):
+        own = {key: value or "" for key, value in attributes}
+        classes = own.get("class", "").split()
+        self.has_formulas |= "math" in classes
+        self.has_results |= own.get("id") == "search-results"
+        if name in self.opened:
+            self.opened[name].append((self.start, self.end, own))
+        if name in ("i", "span") and any(each.startswith("fa-") for each in classes):
+            end = f"</{name}>"
+            drawn = self.icons.inline(own) if self.text.startswith(end, self.end) else ""
+            if drawn:
+                self.change(self.start, self.end + len(end), drawn)
+        elif name == "link" and own.get("rel") == "preload":
+            self.change(self.start, self.end, "")  # fails where scripts are off
+        elif "toctree-toggle" in classes:  # of the contents: an icon without words
+            start, end, summary = self.opened["summary"][-1]
+            self.change(
+                start, end, tag("summary", {**summary, "aria-label": "Pages below this one"})
+            )
+        elif SCROLLED in classes:
+            self.change(self.start, self.end, tag("section", own))  # a div that scrolls has no role
+        elif "search-button-field" in classes:  # its words say what it is
+            kept = {key: own[key] for key in own if key not in ("title", "aria-label")}
+            self.change(self.start, self.end, tag(name, kept))
+        elif role := self.role(own, classes):
+            self.change(self.start, self.end, tag(name, {**own, "role": role}))
+
+    @staticmethod
+    def role(own: dict[str, str], classes: list[str]) -> str:
+        """What assistive technology should take an element for; empty if it is as it should be."""
+        if own.get("id") == "pst-primary-sidebar":
+            return "complementary"
+        if own.get("role") == "doc-biblioentry":  # deprecated
+            return "listitem"
+        return "presentation" if "indextable" in classes else ""
+
+    def handle_endtag(self, name):
+        if not self.opened.get(name):
+            return
+        start, inside, own = self.opened[name].pop()
+        end = self.start + len(f"</{name}>")
+        if name == "script":
+            self.scripts.append(Script(start, end, own, self.text[inside : self.start]))
+        elif SCROLLED in own.get("class", "").split():
+            self.change(self.start, end, "</section>")
+
+    def drop_scripts(self) -> None:
+        """Take out those that the page does not need."""
+        unused = {ICON_SCRIPT, *(() if self.has_results else SEARCH_SCRIPTS)}
+        unused |= set() if self.has_formulas else {MATHS_SCRIPT}
+        for script in self.scripts:
+            if script.name in unused:
+                self.change(script.start, script.end, "")
+
+    def separate_stills(self, store) -> None:
+        """After each widget, its trait `still` as a picture for where there is no script.
+
+        The picture becomes a file; what the trait held is no longer part of the page.
+        """
+        images = {}
+        for script in self.scripts:
+            if script.attributes.get("type") == f"{WIDGETS}state+json":
+                saved = json.loads(script.content)
+                for model, entry in saved["state"].items():
+                    if address := entry.get("state", {}).pop("still", ""):
+                        alt = entry["state"].get("still_alt", "")
+                        told = {"class": "still", "src": store(address), "alt": alt}
+                        images[model] = f"<noscript>{tag('img', told)}</noscript>"
+                told = json.dumps(saved).replace("</", "<\\/")
+                self.change(
+                    script.start, script.end, f"{tag('script', script.attributes)}{told}</script>"
+                )
+        for script in self.scripts:
+            if script.attributes.get("type") == f"{WIDGETS}view+json":
+                image = images.get(json.loads(script.content)["model_id"], "")
+                self.change(script.end, script.end, image)
 
 
 def keep(folder: Path, up: str, address: str) -> str:

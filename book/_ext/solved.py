@@ -64,7 +64,8 @@ def printed(call) -> str:
 
 def variants(lesson: str) -> list[dict[str, str]] | str:
     """The settings of all variants of a lesson; or why it has none."""
-    kept = yaml.safe_load(FILE.read_text(encoding="utf-8"))[lesson]
+    every = yaml.safe_load(FILE.read_text(encoding="utf-8"))
+    kept = every.get(lesson, f"{FILE.name} does not name it yet")
     return kept if isinstance(kept, str) else [{k: str(v) for k, v in one.items()} for one in kept]
 
 

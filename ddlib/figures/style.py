@@ -8,7 +8,6 @@ and scrolls in its own box.
 from __future__ import annotations
 
 import hashlib
-import html
 import io
 import itertools
 import re
@@ -17,6 +16,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from xml.etree import ElementTree
 
 import matplotlib as mpl
 from matplotlib import ticker
@@ -376,61 +376,90 @@ def plain_ticks(axis: Axis) -> None:
 
 
 def _inline(svg: str, alt: str) -> str:
-    """Matplotlib's SVG file as markup for a page: own ids, page colours, an accessible name.
-
-    Matplotlib writes each thing in one way, so patterns find it; there is no setting for these.
-    """
-    svg = svg[svg.index("<svg ") :]
-    # Matplotlib's style sheet would reach every element of the page
-    svg = re.sub(r"<metadata>.*?</metadata>|<style.*?</style>|<!--.*?-->", "", svg, flags=re.DOTALL)
+    """Matplotlib's SVG file as markup for a page: own ids, page colours, an accessible name."""
+    root = _parsed(svg)
+    for formula in [element for element in root.iter("text") if len(element)]:
+        _put_in_reading_order(formula)
     prefix = "f" + hashlib.sha256((alt + svg).encode()).hexdigest()[:8]
-    used = set(re.findall(r'(?:href="|url\()#([^")]*)', svg))
-    svg = re.sub(r' id="([^"]*)"', lambda i: f' id="{prefix}-{i[1]}"' if i[1] in used else "", svg)
-    svg = re.sub(r'(href="#|url\(#)', rf"\g<1>{prefix}-", svg)
-    svg = svg.replace(INK, "currentColor")
-    svg = re.sub(r' transform="rotate\(-0 [^"]*"', "", svg)
-    svg = re.sub(r' (d|x|y|transform)="[^"]*"', _rounded, svg)
-    svg = _DOT.sub(r"M\1 \2h0", svg)
-    svg = re.sub(r"; font-family: 'DejaVu Sans'", "", svg)  # said once, on the whole picture
-    svg = _FORMULA.sub(_in_reading_order, svg)
-    svg = re.sub(r"font-size: ([\d.]+)px|font: ([\d.]+)px", _legible_size, svg)
-    size = re.search(r'width="([\d.]+)pt" height="([\d.]+)pt"', svg)
-    smallest = min(map(float, re.findall(r"font(?:-size)?: ([\d.]+)px", svg)), default=None)
-    least = f"--least:{float(size[1]) / smallest * 9:.0f}px;" if smallest else ""
-    style = f"width:{float(size[1]) / 72:.2f}in;{least}max-width:100%;height:auto;"
+    elements = list(root.iter())
+    values = [value for element in elements for value in element.attrib.values()]
+    named = {element.get("id") for element in elements}
+    used = named.intersection(name for value in values for name in _LINK.findall(value))
+
+    def own(link: re.Match) -> str:
+        return f"#{prefix}-{link[1]}" if link[1] in used else link[0]
+
+    sizes = []
+    for element in elements:
+        for name, value in list(element.items()):
+            new = _LINK.sub(own, value).replace(INK, "currentColor")
+            if name == "id":
+                new = f"{prefix}-{value}" if value in used else None
+            elif name in ("d", "x", "y", "transform"):
+                new = None if value.startswith("rotate(-0 ") else _rounded(new)
+            elif name == "style":
+                new = new.replace("; font-family: 'DejaVu Sans'", "")  # said once, on the whole
+                new = _SIZE.sub(lambda size: _legible_size(size, sizes), new)
+            element.set(name, new) if new is not None else element.attrib.pop(name)
+    width = float(root.attrib.pop("width").removesuffix("pt"))
+    del root.attrib["height"]
+    least = f"--least:{width / min(sizes) * 9:.0f}px;" if sizes else ""
+    style = f"width:{width / 72:.2f}in;{least}max-width:100%;height:auto;"
     style += f"font-family:{_FONT};"
     style += "text-rendering:geometricPrecision;stroke-linejoin:round;stroke-linecap:butt"
-    label = html.escape(alt, quote=True)
-    attributes = f'role="figure" aria-label="{label}" style="{style}"'
-    svg = svg.replace(size[0], attributes, 1)
-    return re.sub(r"\n\s*", "\n", svg)
+    for name, value in {"role": "figure", "aria-label": alt, "style": style}.items():
+        root.set(name, value)
+    return ElementTree.tostring(root, encoding="unicode").replace(" />", "/>")
 
 
+_XLINK = "http://www.w3.org/1999/xlink"
+_LINK = re.compile(r"(?:^|(?<=url\())#([^)\s]+)")  # in an attribute: to a part of the picture
+_SIZE = re.compile(r"(?<=font-size: )[\d.]+(?=px)|(?<=font: )[\d.]+(?=px)")
 # A line of no length, which is a dot if its ends are round
-_DOT = re.compile(r"M (\S+) (\S+)\s+L \1 \2\s+(?=M|\")")
-_FORMULA = re.compile(r"<text>\s*(<tspan.*?)</text>", re.DOTALL)
-_LETTER = re.compile(r'<tspan x="([^"]*)" y="([^"]*)" style="([^"]*)">(.*?)</tspan>')
+_DOT = re.compile(r"M (\S+) (\S+)\s+L \1 \2\s*(?=M|$)")
 
 
-def _legible_size(size: re.Match) -> str:
-    """A size of text, at least `_LEAST`."""
-    return size[0].replace(size[1] or size[2], f"{max(float(size[1] or size[2]), _LEAST):g}")
+def _parsed(svg: str) -> ElementTree.Element:
+    """An SVG file as elements that have no prefixes, without what is not drawn.
+
+    Matplotlib's own style sheet goes, too: it would reach every element of the page.
+    """
+    root = ElementTree.fromstring(svg)
+    for element in root.iter():
+        element.tag = element.tag.rpartition("}")[2]
+        for part in [each for each in element if each.tag.endswith(("}metadata", "}style"))]:
+            element.remove(part)
+        if link := element.attrib.pop(f"{{{_XLINK}}}href", None):
+            element.set("xlink:href", link)
+        element.tail = "\n"
+        if len(element):
+            element.text = "\n"
+    root.set("xmlns", "http://www.w3.org/2000/svg")
+    root.set("xmlns:xlink", _XLINK)
+    return root
 
 
-def _in_reading_order(formula: re.Match) -> str:
+def _legible_size(size: re.Match, sizes: list[float]) -> str:
+    """A size of text, at least `_LEAST`; `sizes` gathers them."""
+    sizes.append(max(float(size[0]), _LEAST))
+    return f"{sizes[-1]:g}"
+
+
+def _put_in_reading_order(formula: ElementTree.Element) -> None:
     """A formula's letters from left to right; matplotlib sorts them by their fonts.
 
     Neighbours of one font and height stand together, each at its place.
     """
-    letters = sorted(_LETTER.findall(formula[1]), key=lambda letter: float(letter[0]))
-    text = ""
-    for (y, style), run in itertools.groupby(letters, key=lambda letter: letter[1:3]):
+    letters = sorted(formula, key=lambda letter: round(float(letter.get("x")), 2))
+    formula[:], formula.text = [], None
+    for (y, style), run in itertools.groupby(letters, lambda one: (one.get("y"), one.get("style"))):
         run = list(run)
-        x, words = " ".join(letter[0] for letter in run), "".join(letter[3] for letter in run)
-        text += f'<tspan x="{x}" y="{y}" style="{style}">{words}</tspan>'
-    return f"<text>{text}</text>"
+        x = " ".join(letter.get("x") for letter in run)
+        joined = ElementTree.SubElement(formula, "tspan", x=x, y=y, style=style)
+        joined.text = "".join(letter.text for letter in run)
 
 
-def _rounded(places: re.Match) -> str:
+def _rounded(places: str) -> str:
     """Coordinates to hundredths of a point: nobody sees the rest."""
-    return re.sub(r"-?\d+\.\d{3,}", lambda x: f"{float(x[0]):.2f}", places[0])
+    places = re.sub(r"-?\d+\.\d{3,}", lambda x: f"{float(x[0]):.2f}", places)
+    return _DOT.sub(r"M\1 \2h0", places)

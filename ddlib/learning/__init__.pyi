@@ -19,7 +19,6 @@ from .network import (
     INITIAL as INITIAL,
     TorqueModel as TorqueModel,
     Weights as Weights,
-    rows as rows,
 )
 from .span import (
     Directions as Directions,

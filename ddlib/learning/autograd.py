@@ -40,7 +40,7 @@ class WindowNetwork(nn.Module):
 
     def weights(self) -> Weights:
         """The weights as plain arrays."""
-        return Weights(*(getattr(self, name).detach().numpy().copy() for name in WEIGHT_NAMES))
+        return Weights(*(getattr(self, name).detach().numpy() for name in WEIGHT_NAMES))
 
 
 class TorqueNetwork(nn.Module):

@@ -13,7 +13,7 @@ from tqdm.auto import tqdm
 from ddlib._check import cases_of, every, finite_array, flag, integer, like, shaped
 from ddlib.learning._packed import product_with
 from ddlib.learning._threads import in_threads
-from ddlib.learning.network import TorqueModel, Weights, from_rows, rows
+from ddlib.learning.network import TorqueModel, Weights, from_rows
 from ddlib.learning.training import (
     WARM_UP_MOMENTUM,
     History,
@@ -211,7 +211,7 @@ class Descent:
     def __init__(self, weights: Weights, x, y, eps, momentum):
         n, self.hidden = weights.hidden_bias.shape
         self.shape, self.members = weights.hidden_weights.shape[-2:], n
-        first = rows(weights)
+        first = weights.rows
         self.rows = first.shape[1]
         self.first = _tensor(first.reshape(n * self.rows, -1))
         self.second = _tensor(weights.output_weights)

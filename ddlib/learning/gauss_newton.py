@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 import torch
 
-from ddlib.learning.network import Weights, from_rows, rows
+from ddlib.learning.network import Weights, from_rows
 from ddlib.learning.training import TrainingSet
 
 _BLOCK = 512  # cases whose products of inputs are held at once, or more while they are
@@ -61,7 +61,7 @@ class Objective:
 
     def pack(self, weights: Weights) -> torch.Tensor:
         """Vector of a network's parameters, shape (parameter,)."""
-        first = _float64(rows(weights)) @ self._colour
+        first = _float64(weights.rows) @ self._colour
         return torch.cat([first.flatten(), _float64(weights.output_weights).flatten()])
 
     def unpack(self, vector: torch.Tensor) -> Weights:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import warnings
 from contextlib import closing
 from dataclasses import fields
+from functools import partial
 from threading import Event
 from typing import NamedTuple
 
@@ -182,23 +183,22 @@ def _descend(objective, vector, steps, tolerance, target, tell, stop) -> _End:
         matrix, gradient, lengths = objective.normal(vector, exact)
         cosine = gradient.abs() / ((2 * value) ** 0.5 * lengths).clamp_min(1e-300)
         measure = float(cosine.max()) if lengths.any() else np.inf  # inf: saturated
+        ended = partial(_End, vector, path, value, measure)
         if measure <= tolerance:
-            reason = "gradient"
-        elif target is not None and error <= target:
-            reason = "target"
-        elif len(path) > steps:
-            reason = "steps"
-        elif stop.is_set():
-            reason = "interrupted"
-        else:
-            mu = _DAMPING * float(matrix.diagonal().max()) if mu is None else mu
-            step = _step(objective, vector, value, matrix, gradient, mu, exact)
-            if exact and step is None:
-                matrix = objective.normal(vector)[0]
-                step = _step(objective, vector, value, matrix, gradient, mu, False)
-            reason = "" if step else "no descent"
-        if reason:
-            return _End(vector, path, value, measure, reason)
+            return ended("gradient")
+        if target is not None and error <= target:
+            return ended("target")
+        if len(path) > steps:
+            return ended("steps")
+        if stop.is_set():
+            return ended("interrupted")
+        mu = _DAMPING * float(matrix.diagonal().max()) if mu is None else mu
+        step = _step(objective, vector, value, matrix, gradient, mu, exact)
+        if exact and step is None:
+            matrix = objective.normal(vector)[0]
+            step = _step(objective, vector, value, matrix, gradient, mu, False)
+        if step is None:
+            return ended("no descent")
         vector, value, error, mu = step
         exact = measure < _NEAR
         path.append((error, objective.test_rmss(vector)))

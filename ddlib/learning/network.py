@@ -1,9 +1,9 @@
 """The window network of section 3 as arrays, and with its scaling: radians to newton metres.
 
-Weights have two forms. `Weights` has five arrays with the names of section 3: this is what is read,
-drawn and saved. Descent, Levenberg-Marquardt and the tangent compute with two matrices: `rows`,
-a row for each unit that sees the window, with its bias in the last column, and the weights from
-hidden units to outputs; `from_rows` leads back. PyTorch modules have the five arrays as parameters.
+All weights stand in two matrices. `Weights.rows` has a row for each unit that sees the window, with
+its bias in the last column; the other one is from hidden units to outputs. Descent,
+Levenberg-Marquardt and the tangent compute with these two. The five arrays that section 3 names are
+views of them. Files and PyTorch modules hold the five.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from __future__ import annotations
 import importlib
 import io
 import os
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
+from math import prod
 from pathlib import Path
 
 import numpy as np
@@ -33,7 +34,10 @@ def _sigmoid(x):
 
 @dataclass(frozen=True, repr=False)
 class Weights:
-    """Weights of one network, or of many with leading axes."""
+    """Weights of one network, or of many with leading axes.
+
+    The arrays that are given are copied. What is written into a field is written into `rows`, too.
+    """
 
     hidden_weights: np.ndarray  #: (..., hidden, joint, width): from the window, oldest first.
     hidden_bias: np.ndarray  #: (..., hidden)
@@ -42,26 +46,50 @@ class Weights:
     output_bias: np.ndarray  #: (..., output)
 
     def __post_init__(self):
-        for field in fields(self):
-            object.__setattr__(self, field.name, np.asarray(getattr(self, field.name)))
-        if self.hidden_weights.dtype.kind not in "fiu" or self.hidden_weights.ndim < 3:
+        given = {name: np.asarray(getattr(self, name)) for name in WEIGHT_NAMES}
+        filters, outputs = given["hidden_weights"], given["output_bias"]
+        if filters.dtype.kind not in "fiu" or filters.ndim < 3:
             raise ValueError(
                 "hidden_weights must be numbers of shape (..., hidden, joint, width), got "
-                f"{told(self.hidden_weights)}"
+                f"{told(filters)}"
             )
-        if self.output_bias.ndim < 1:
-            raise ValueError(f"output_bias must have shape (..., output), got {self.output_bias}")
-        *lead, hidden, joints, width = self.hidden_weights.shape
-        outputs = self.output_bias.shape[-1]
+        if outputs.ndim < 1:
+            raise ValueError(f"output_bias must have shape (..., output), got {outputs}")
+        *lead, hidden, joints, width = filters.shape
         wanted = {
             "hidden_bias": (*lead, hidden),
-            "output_weights": (*lead, outputs, hidden),
-            "direct_weights": (*lead, outputs, joints, width),
-            "output_bias": (*lead, outputs),
+            "output_weights": (*lead, outputs.shape[-1], hidden),
+            "direct_weights": (*lead, outputs.shape[-1], joints, width),
+            "output_bias": (*lead, outputs.shape[-1]),
         }
         for name, shape in wanted.items():
-            if getattr(self, name).shape != shape:
-                raise ValueError(f"{name} must have shape {shape}, got {getattr(self, name).shape}")
+            if given[name].shape != shape:
+                raise ValueError(f"{name} must have shape {shape}, got {given[name].shape}")
+
+        def rows_of(weights, bias):
+            flat = given[weights].reshape(*given[bias].shape, joints * width)
+            return np.concatenate([flat, given[bias][..., None]], -1)
+
+        layers = rows_of("hidden_weights", "hidden_bias"), rows_of("direct_weights", "output_bias")
+        output_weights = given["output_weights"].copy()
+        self._stand_in(np.concatenate(layers, -2), output_weights, (joints, width))
+
+    def _stand_in(self, rows, output_weights, window):
+        """Hold two matrices, and views of them by their names."""
+        hidden = output_weights.shape[-1]
+        filters = rows[..., :-1].reshape(*rows.shape[:-1], *window)
+        arrays = (
+            filters[..., :hidden, :, :],
+            rows[..., :hidden, -1],
+            output_weights,
+            filters[..., hidden:, :, :],
+            rows[..., hidden:, -1],
+        )
+        for name, array in zip((*WEIGHT_NAMES, "_rows"), (*arrays, rows)):
+            object.__setattr__(self, name, array)
+
+    def __reduce__(self):  # what is copied or sent to another process has its own two matrices
+        return from_rows, (self.rows, self.output_weights, self.hidden_weights.shape[-2:])
 
     def __repr__(self):
         *lead, hidden, joints, width = self.hidden_weights.shape
@@ -74,8 +102,6 @@ class Weights:
 
         `width` is the window size in samples; member k depends on `seed + k` only.
         """
-        for name, value in (("members", members), ("width", width), ("hidden", hidden)):
-            integer(name, value, 1)
         integer("members", members, 1, 10**6)
         integer("width", width, 1, 10**5)
         integer("hidden", hidden, 1, 10**5)
@@ -93,21 +119,30 @@ class Weights:
     @classmethod
     def concatenate(cls, parts) -> Weights:
         """One ensemble of several: their members in order."""
-        return cls(*(np.concatenate([getattr(p, name) for p in parts]) for name in WEIGHT_NAMES))
+        return _joined(np.concatenate, list(parts))
 
     @classmethod
     def stack(cls, parts) -> Weights:
         """Several of one shape along a new leading axis."""
-        return cls(*(np.stack([getattr(p, name) for p in parts]) for name in WEIGHT_NAMES))
+        return _joined(np.stack, list(parts))
 
     def __getitem__(self, index) -> Weights:
         """The network(s) at `index` of the leading axis."""
-        return Weights(*(getattr(self, name)[index] for name in WEIGHT_NAMES))
+        window = self.hidden_weights.shape[-2:]
+        return from_rows(self.rows[index], self.output_weights[index], window)
 
     def __len__(self) -> int:
         if self.hidden_bias.ndim < 2:
             raise TypeError("weights must be of an ensemble: a single network has no length")
         return len(self.hidden_bias)
+
+    @property
+    def rows(self) -> np.ndarray:
+        """Weights from the window to each unit and its bias, ``(..., unit, joint * width + 1)``.
+
+        Hidden units come first, then the outputs with their direct weights.
+        """
+        return self._rows
 
     @property
     def width(self) -> int:
@@ -117,15 +152,13 @@ class Weights:
     @property
     def largest(self) -> np.ndarray:
         """Magnitude of the largest weight or bias of each network, shape (...)."""
-        lead = self.hidden_bias.ndim - 1
-        each = [np.abs(getattr(self, name)) for name in WEIGHT_NAMES]
-        return np.max([x.max(axis=tuple(range(lead, x.ndim))) for x in each], axis=0)
+        each = (np.abs(matrix).max((-2, -1)) for matrix in (self.rows, self.output_weights))
+        return np.maximum(*each)
 
     def count(self, biases: bool = False) -> int:
         """Number of weights of one network, with or without `biases`."""
-        names = [n for n in WEIGHT_NAMES if biases or not n.endswith("bias")]
-        lead = self.hidden_bias.ndim - 1
-        return sum(int(np.prod(getattr(self, n).shape[lead:])) for n in names)
+        units, columns = self.rows.shape[-2:]
+        return units * (columns if biases else columns - 1) + prod(self.output_weights.shape[-2:])
 
     def activity(self, x) -> tuple[np.ndarray, np.ndarray]:
         """Hidden and output activities, ``(..., cases, unit)``, for windows scaled to 0..1."""
@@ -133,42 +166,31 @@ class Weights:
         x = shaped("x", x, f"(cases, {joints}, {width})")
         x = x.reshape(len(x), -1)
 
-        def dot(weights):  # (..., units, joint, width) -> (..., cases, units)
-            flat = weights.reshape(*weights.shape[:-2], -1)
-            return np.swapaxes(flat @ x.T, -1, -2)
+        def dot(rows):  # (..., unit, joint * width + 1) -> (..., cases, unit)
+            return np.swapaxes(rows[..., :-1] @ x.T, -1, -2)
 
-        hidden = _sigmoid(dot(self.hidden_weights) + self.hidden_bias[..., None, :])
-        net = dot(self.direct_weights) + hidden @ np.swapaxes(self.output_weights, -1, -2)
+        units = self.hidden_bias.shape[-1]
+        hidden = _sigmoid(dot(self.rows[..., :units, :]) + self.hidden_bias[..., None, :])
+        direct = dot(self.rows[..., units:, :])
+        net = direct + hidden @ np.swapaxes(self.output_weights, -1, -2)
         return hidden, _sigmoid(net + self.output_bias[..., None, :])
 
 
-def rows(weights: Weights) -> np.ndarray:
-    """Weights from the window to each unit and its bias, ``(..., unit, joint * width + 1)``.
-
-    Hidden units come first, then the outputs with their direct weights.
-    """
-    like("weights", weights, "Weights")
-    parts = [
-        np.concatenate([w.reshape(*w.shape[:-2], -1), b[..., None]], -1)
-        for w, b in (
-            (weights.hidden_weights, weights.hidden_bias),
-            (weights.direct_weights, weights.output_bias),
-        )
-    ]
-    return np.concatenate(parts, -2)
+def from_rows(rows: np.ndarray, output_weights: np.ndarray, window: tuple) -> Weights:
+    """Networks that stand in these two matrices, uncopied, `window` being (joints, width)."""
+    units = sum(output_weights.shape[-2:])
+    if rows.shape != (wanted := (*output_weights.shape[:-2], units, prod(window) + 1)):
+        raise ValueError(f"rows must have shape {wanted}, got {rows.shape}")
+    weights = Weights.__new__(Weights)
+    weights._stand_in(rows, output_weights, window)
+    return weights
 
 
-def from_rows(first: np.ndarray, output_weights: np.ndarray, window: tuple) -> Weights:
-    """Networks of their `rows` and hidden-to-output weights, `window` being (joints, width)."""
-    hidden = output_weights.shape[-1]
-    filters = first[..., :-1].reshape(*first.shape[:-1], *window)
-    return Weights(
-        filters[..., :hidden, :, :],
-        first[..., :hidden, -1],
-        output_weights,
-        filters[..., hidden:, :, :],
-        first[..., hidden:, -1],
-    )
+def _joined(join, parts) -> Weights:
+    """What numpy's `join` makes of several ensembles' matrices."""
+    rows = join([part.rows for part in parts])
+    output_weights = join([part.output_weights for part in parts])
+    return from_rows(rows, output_weights, parts[0].hidden_weights.shape[-2:])
 
 
 @dataclass(frozen=True)

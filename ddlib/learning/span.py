@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ddlib._check import every, finite_array, integer, like, non_negative, number, shaped
-from ddlib.learning.network import Weights, from_rows, rows
+from ddlib.learning.network import Weights, from_rows
 from ddlib.learning.training import WARM_UP_MOMENTUM, TrainingSet
 
 
@@ -53,7 +53,8 @@ class Directions:
 
     def along(self, weights: Weights) -> np.ndarray:
         """Components of every unit's weights and bias, ``(..., unit, directions)``."""
-        return rows(weights) @ self.axes.T
+        like("weights", weights, "Weights")
+        return weights.rows @ self.axes.T
 
     def energy(self, weights: Weights, start: Weights | None = None) -> np.ndarray:
         """Squared components summed over units: of weights, or of what they changed by."""
@@ -108,7 +109,7 @@ def effective_steps(rates, epochs, momentum: float = 0.0, warm_up: int = 0) -> n
 def jacobian(weights: Weights, x) -> np.ndarray:
     """Derivatives of one network's outputs in scaled windows, ``(cases, output, parameter)``.
 
-    Parameters are its `rows` one after the other, then the hidden-to-output weights.
+    Parameters are its `Weights.rows` one after the other, then the hidden-to-output weights.
     """
     like("weights", weights, "Weights")
     hidden, output = weights.activity(x)
@@ -125,7 +126,7 @@ def jacobian(weights: Weights, x) -> np.ndarray:
 def with_change(weights: Weights, change) -> Weights:
     """One network plus changes of its parameters, ``(..., parameter)``, ordered as `jacobian`."""
     like("weights", weights, "Weights")
-    start, change = rows(weights), finite_array("change", change)
+    start, change = weights.rows, finite_array("change", change)
     shaped("change", change, f"(..., {start.size + weights.output_weights.size})")
     first = start + change[..., : start.size].reshape(*change.shape[:-1], *start.shape)
     second = change[..., start.size :].reshape(*change.shape[:-1], *weights.output_weights.shape)

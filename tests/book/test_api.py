@@ -10,6 +10,7 @@ import pytest
 from book_pages import API, ROOT, source
 
 from ddlib import control, effects, learning
+from workshop.report.evidence.claims import load, measuring_function
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import dd_api
@@ -48,6 +49,12 @@ def test_every_module_is_documented_once_on_the_page_of_its_package():
     headed = [pair for text in texts.values() for pair in re.findall(heads, text, re.M)]
     assert len(headed) > 30
     assert not [pair for pair in headed if pair[1].split(".")[-1] != pair[0].split(".")[-1]]
+
+
+def test_the_code_of_every_claim_is_documented():
+    named = re.findall(r"automodule:: ([\w.]+)", source("book/api/workshop").read_text("utf-8"))
+    modules = {measuring_function(claim.measure).__module__ for claim in load() if claim.measure}
+    assert len(modules) > 20 and modules <= set(named)
 
 
 @pytest.mark.parametrize(

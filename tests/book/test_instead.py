@@ -150,7 +150,7 @@ def test_what_is_lacking_is_named():
     assert not any(c["needs"] for page in WALK for c in live.live_cells(lesson(page)))
 
 
-RUN = """
+AS_IN_A_PAGE = """
 import os, re, sys
 from importlib.util import module_from_spec, spec_from_file_location
 sys.path[:0] = {path}
@@ -161,6 +161,9 @@ if {twin}:
 import absent
 absent.ABSENT = absent.INERT = ()
 absent.start()  # ensembles are trained by numpy either way
+"""
+
+RUN = """
 from chapter_rules import is_starter, visible
 from open_cells import execute, lesson
 import matplotlib
@@ -174,18 +177,36 @@ for cell in cells:
 """
 
 
+def in_a_page(code: str, twin: bool = True) -> str:
+    """What code prints where ensembles are trained as in a page."""
+    path = [str(ROOT / p) for p in ("tests/support", "book", "book/_ext/live_page", ".")]
+    before = AS_IN_A_PAGE.format(path=path, twin=twin, instead=str(INSTEAD / "torch.py"))
+    command = [sys.executable, "-c", before + code]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert not done.returncode, done.stderr[-2000:]
+    return done.stdout
+
+
+TRAIN = """
+from ddlib.learning import TrainingSet, Weights, train_ensemble
+from ddlib.setups import JOINT_DAMPING
+data = TrainingSet.from_recording(JOINT_DAMPING.record([(30, 20), (10, 40), (45, 5)]), 11)
+start = Weights.random(40, 11, 3, seed=1)
+_, history, kept = train_ensemble(start, data, snapshots=[5, 60], epochs=60, progress=False)
+print(*history.training[-1, [0, -1]], abs(kept[60].hidden_weights).sum())
+"""
+
+
+def test_an_ensemble_is_trained_as_by_the_package(capsys):
+    exec(TRAIN, {})
+    told, wanted = in_a_page(TRAIN), capsys.readouterr().out
+    np.testing.assert_allclose(*(np.array(said.split(), float) for said in (told, wanted)), 1e-4)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("page", WITH_TORCH)
 def test_open_cells_print_the_same_by_what_stands_in_for_pytorch(page):
-    path = [str(ROOT / p) for p in ("tests/support", "book", "book/_ext/live_page", ".")]
-    told = []
-    for own in (True, False):
-        code = RUN.format(path=path, twin=own, instead=str(INSTEAD / "torch.py"), page=page)
-        done = subprocess.run(
-            [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True
-        )
-        assert not done.returncode, done.stderr[-2000:]
-        told.append(done.stdout)
+    told = [in_a_page(RUN.format(page=page), own) for own in (True, False)]
     assert told[0] == told[1] and len(told[0].splitlines()) > 5
 
 

@@ -5,10 +5,12 @@ import hashlib
 import html
 import json
 import re
+import subprocess
 import sys
 from dataclasses import replace
 
 import chromium
+import firefox
 import live_pages
 import numpy as np
 import pytest
@@ -90,6 +92,18 @@ def test_without_a_mirror_wheels_come_from_pyodides_address_and_stay(tmp_path, m
         said.startswith("no sympy of Pyodide") and "MIRROR=" in said and "cannot be reached" in said
     )
     assert len(said.splitlines()) == 1 and len(said) <= 300
+
+
+def test_without_npms_registry_one_sentence_says_what_is_missing(tmp_path, monkeypatch):
+    said = "npm error code EAI_AGAIN\nnpm error errno EAI_AGAIN\nnpm error request to x failed\n"
+    ended = subprocess.CompletedProcess([], 1, "", said)
+    monkeypatch.setattr(live.shutil, "which", lambda name: name)
+    monkeypatch.setattr(live.subprocess, "run", lambda *args, **how: ended)
+    with pytest.raises(live.Refused) as refusal:
+        live.core(tmp_path / "kept")
+    told = str(refusal.value)
+    assert len(told.splitlines()) == 1 and "ended with “request to x failed”" in told
+    assert told.startswith(f"no core of Pyodide {live.VERSION}") and live.PUBLIC in told
 
 
 def test_pyodides_address_has_its_version():
@@ -215,13 +229,17 @@ def test_a_reader_changes_a_cell_and_goes_back(browser, site):
 @pytest.mark.slow
 @pytest.mark.parametrize("page", WALK)
 def test_open_cells_run_through_in_the_page(browser, site, page):
-    tab = browser.new_page()
-    tab.goto(f"{site}/{page}.html")
-    tab.get_by_role("button", name="Run this page").click()
-    tab.locator(IDLE).wait_for(timeout=900_000)
-    assert all(times := tab.locator(".live-time").all_inner_texts())
-    assert len(times) == len(live.live_cells(lesson(page)))
-    assert not tab.locator(".live-error, .live-warning, .live-note:has(a)").all_inner_texts()
+    live_pages.runs_through(browser.new_page(), site, page)
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+def test_a_lesson_runs_through_in_firefox_too(playwright, site):
+    """Wherever one is installed; `make firefox` has all lessons run in it."""
+    if firefox.find() is None:
+        pytest.skip(firefox.HOW_TO_GET_ONE)
+    with firefox.launched(playwright) as browser:
+        live_pages.runs_through(browser.new_page(), site, "book/feedback")
 
 
 def marked(tab) -> list[str]:

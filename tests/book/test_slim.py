@@ -1,5 +1,6 @@
 """What the build takes out of the pages and their styles."""
 
+import json
 import sys
 
 import pytest
@@ -12,8 +13,8 @@ import slim
 class NoIcons:
     """In place of the theme's icon font."""
 
-    def inline(self, tag):
-        return tag[0]
+    def inline(self, attributes):
+        return ""
 
 
 def page(text: str) -> str:
@@ -54,3 +55,65 @@ def test_a_page_loads_the_scripts_it_uses():
     for script, body, stays in SCRIPTS:
         made = page(f'<script defer src="_static/{script}"></script>{body}')
         assert ("<script" in made) is stays, (script, body)
+
+
+REPAIRS = {
+    '<div id="pst-primary-sidebar"><i class="fa-solid fa-sun"></i></div>': (
+        '<div id="pst-primary-sidebar" role="complementary"><i class="fa-solid fa-sun"></i></div>'
+    ),
+    '<div class="citation" role="doc-biblioentry">&amp;</div>': (
+        '<div class="citation" role="listitem">&amp;</div>'
+    ),
+    '<summary><span class="toctree-toggle"></span></summary>': (
+        '<summary aria-label="Pages below this one"><span class="toctree-toggle"></span></summary>'
+    ),
+    '<button class="btn search-button-field" title="Search" aria-label="Search">': (
+        '<button class="btn search-button-field">'
+    ),
+    '<table style="width: 100%" class="indextable genindextable">': (
+        '<table style="width: 100%" class="indextable genindextable" role="presentation">'
+    ),
+    f'<div><div class="{slim.SCROLLED}"><table>\n<td><div>1</div></td></table></div>': (
+        f'<div><section class="{slim.SCROLLED}"><table>\n<td><div>1</div></td></table></section>'
+    ),
+    '<link rel="preload" as="script" href="a.js" /><link rel="icon" href="a.svg"/>': (
+        '<link rel="icon" href="a.svg"/>'
+    ),
+    '<meta http-equiv="Refresh" content="0; url=a.html" />': (
+        f'{slim.HEAD}<meta http-equiv="Refresh" content="0; url=a.html" />'
+    ),
+    '<p title="a > b" hidden>&nbsp;&#x2F; <br><!-- <div id="x"> --><SVG viewBox="0 0 1 1"/>': None,
+}
+
+
+def test_pages_are_repaired_and_all_else_stays_as_it_is():
+    for text, repaired in REPAIRS.items():
+        assert page(text) == (repaired or text)
+
+
+def test_icons_become_pictures_where_the_font_has_them():
+    class Named:
+        def inline(self, attributes):
+            return f"[{attributes['class']}]" if "fa-sun" in attributes["class"] else ""
+
+    text = (
+        '<i class="fas fa-sun" data-mode="light"></i><i class="fas fa-none"></i><i class="a"></i>'
+    )
+    left = '[fas fa-sun]<i class="fas fa-none"></i><i class="a"></i>'
+    assert slim.slim_page(text, Named(), str) == left
+
+
+def test_stills_leave_the_state_of_widgets_for_files():
+    state = {"state": {"m": {"state": {"still": "data:x", "still_alt": 'a "<" b', "k": "</p>"}}}}
+    state = json.dumps(state).replace("</", "<\\/")
+    text = (
+        f'<script type="{slim.WIDGETS}view+json">{{"model_id": "m"}}</script><p>1</p>'
+        f'<script type="{slim.WIDGETS}state+json">{state}</script>'
+    )
+    made = slim.slim_page(text, NoIcons(), lambda address: f"_images/{address[5:]}.svg")
+    assert (
+        '<noscript><img class="still" src="_images/x.svg" alt="a &quot;&lt;&quot; b"></noscript>'
+        "<p>1</p>" in made
+    )
+    assert made.endswith('"still_alt": "a \\"<\\" b", "k": "<\\/p>"}}}}</script>')
+    assert "data:" not in made

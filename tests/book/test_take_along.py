@@ -6,6 +6,7 @@ import zipfile
 
 import pytest
 from book_pages import CHAPTERS, EVIDENCE, ROOT
+from bs4 import BeautifulSoup
 from pypdf import PdfReader, PdfWriter
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
@@ -21,19 +22,53 @@ def test_the_walk_has_every_lesson_and_the_second_volume_the_evidence():
     assert not set(walk) & set(EVIDENCE) and [*behind[: len(EVIDENCE)]] == EVIDENCE
 
 
-def test_pages_are_filled_in_and_an_index_names_each_once():
-    text = (
-        f'<ul class="index"><li>null {pdf._page("a")} {pdf._page("b")} {pdf._page("c")}</li></ul>'
-    )
-    text = text.replace("</li>", f" {pdf._page('unprinted')}</li>")
-    found = pdf.filled(pdf.once_a_page(text, {"a": 7, "b": 7, "c": 9}), {"a": 7, "b": 7, "c": 9})
-    assert found.count(">7<") == 1 and found.count(">9<") == 1 and "000" not in found
-    assert ">000<" in pdf.filled(pdf._page("lost"), {"a": 7})
+def volume(**changes) -> str:
+    """A volume of two chapters in one part."""
+    one = {
+        "name": "book/a",
+        "part": "I & II",
+        "title": 'A "<b>"',
+        "anchor": "a",
+        "body": "<h1>A</h1>",
+    }
+    one |= {"solutions": "", "styles": ["<style>p {}</style>"], "terms": [("null", "a")]}
+    two = one | {"title": "B", "anchor": "b", "body": '<h1 id="b">B</h1>'}
+    return pdf.joined("walk", [one | changes, two | {"terms": [("null", "b"), ("null", "lost")]}])
+
+
+def test_a_volume_has_parts_contents_and_index():
+    made = BeautifulSoup(volume(), "html.parser")
+    assert [item.text for item in made.select(".contents li")] == [
+        "I & II", 'A "<b>"000', "B000", "Index000",
+    ]  # fmt: skip
+    assert [part.text.strip() for part in made.select(".part h1")] == ["I & II"]
+    assert made.select_one(".index li").text.split() == ["null", "000", "000", "000"]
+    assert """@page c0 { @top-left { content: "A \\"<b>\\""; } }""" in made.select("style")[1].text
+    assert not made.select("#solutions") and made.select(".chapter h1")[1]["id"] == "b"
+    solved = BeautifulSoup(volume(solutions="<p>1</p>"), "html.parser")
+    assert [item.text for item in solved.select("#solutions :is(h1, h2, p)")] == [
+        "Solutions", 'A "<b>"', "1",
+    ]  # fmt: skip
+
+
+@pytest.mark.browser
+@pytest.mark.chromium
+def test_page_numbers_are_filled_in_and_an_index_names_each_once(browser, tmp_path):
+    path = tmp_path / "volume.html"
+    path.write_text(volume(), encoding="utf-8")
+    with pdf.opened(browser, path) as page:
+        headings = page.evaluate((pdf.HERE / "fill.js").read_text("utf-8"), {"a": 7, "b": 7})
+        told = (
+            page.locator(".index li").inner_text(),
+            page.locator(".contents a.at").all_inner_texts(),
+        )
+    assert told == ("null 7", ["7", "7", "000"])  # the index itself has no number here
+    assert headings == ["Contents", "I & II", "A", "B", "Index"]
 
 
 def test_the_index_leaves_out_what_is_everywhere():
     pages = [{"terms": [("window", f"w{k}")] + [("null", "n")] * (k == 1)} for k in range(20)]
-    assert "null" in pdf.index(pages) and "window" not in pdf.index(pages)
+    assert pdf.index(pages) == [("null", ["n"])]
     assert {"acceleration filter", "mass matrix", "backlash"} <= set(pdf.words(ROOT))
 
 
@@ -90,14 +125,18 @@ def test_printed_places_have_their_pages(browser, tmp_path):
         '<h1 id="two" style="break-before: page">Two</h1>',
         encoding="utf-8",
     )
-    assert pdf.numbers(pdf.printed(browser, path)) == {"one": 1, "two": 2}
+    with pdf.opened(browser, path) as page:
+        assert pdf.numbers(pdf.printed(page)) == {"one": 1, "two": 2}
 
 
 def test_an_epub_leads_from_file_to_file(tmp_path):
     picture = tmp_path / "a.png"
     picture.write_bytes(b"png")
     one = '<h1 id="a--start">A</h1><p data-x="1"><a href="#b--start">B</a></p>'
-    one += f'<img src="{picture.as_uri()}"/><a href="#gone">x</a>'
+    one += f'<img src="{picture.as_uri()}"/><a href="#gone">x</a><a class="see" href="#b--start"/>'
+    one += (
+        '<svg xmlns="http://www.w3.org/2000/svg" role="figure" viewBox="0 0 1 1"/><mjx-a>y</mjx-a>'
+    )
     found = [
         {"name": "book/a", "title": "A & B", "body": one, "solutions": ""},
         {"name": "book/b", "title": "B", "body": '<h1 id="b--start">B</h1>', "solutions": "<p/>"},
@@ -109,5 +148,9 @@ def test_an_epub_leads_from_file_to_file(tmp_path):
         text = archive.read("book/a.xhtml").decode()
         assert 'href="b.xhtml#b--start"' in text and 'src="images/a.png"' in text
         assert "A &amp; B" in text and "data-x" not in text and "#gone" not in text
+        assert '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1 1"/><span>y</span>' in text
+        assert "see" not in text and text.count("<a>x</a>") == 1
         assert archive.read("book/images/a.png") == b"png"
+        manifest = archive.read("book/content.opf").decode()
+        assert '"a.xhtml" media-type="application/xhtml+xml" properties="svg"' in manifest
         assert "solutions.xhtml" in archive.read("book/nav.xhtml").decode()

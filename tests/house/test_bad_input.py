@@ -260,7 +260,6 @@ def _calls():
         (learning.Weights.random, dict(
             members=2, width=7, hidden=3, joints=2, outputs=2, initial=0.1, seed=0
         )),
-        (learning.rows, dict(weights=net)),
         (net.activity, dict(x=set_.x)),
         (_torques, dict(weights=net, inputs=set_.inputs, outputs=set_.outputs)),
         (model().torque, dict(windows=x)),

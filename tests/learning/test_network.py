@@ -1,6 +1,9 @@
 """The window network: sums by hand, counts of the paper, symmetries and files."""
 
+import copy
+import pickle
 import zipfile
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -100,6 +103,66 @@ def test_a_member_depends_on_its_own_seed_only(seed, k):
     for name in WEIGHT_NAMES:
         np.testing.assert_array_equal(getattr(many, name)[k], getattr(alone, name)[0])
     assert not np.array_equal(many.hidden_weights[k], many.hidden_weights[k - 1])
+
+
+# --- two matrices and their views -----------------------------------------------------------
+
+
+@pytest.mark.parametrize("lead", [(), (3,), (2, 3)])
+def test_rows_hold_each_units_window_and_bias(lead):
+    """Hidden units first, then outputs; joint by joint, the oldest sample first."""
+    parts = [RNG.normal(size=(*lead, *s)) for s in ((4, 2, 5), (4,), (3, 4), (3, 2, 5), (3,))]
+    weights = Weights(*parts)
+    for part, name in zip(parts, WEIGHT_NAMES):
+        np.testing.assert_array_equal(getattr(weights, name), part)
+    assert weights.rows.shape == (*lead, 4 + 3, 2 * 5 + 1)
+    np.testing.assert_array_equal(weights.rows[..., 1, 5 + 2], parts[0][..., 1, 1, 2])
+    np.testing.assert_array_equal(weights.rows[..., 4 + 2, 3], parts[3][..., 2, 0, 3])
+    np.testing.assert_array_equal(weights.rows[..., -1], np.concatenate([parts[1], parts[4]], -1))
+
+
+REMADE = {
+    "itself": lambda weights: weights,
+    "changed": lambda weights: replace(weights, hidden_bias=1 + weights.hidden_bias),
+    "some members": lambda weights: weights[1:],
+    "chosen members": lambda weights: weights[[2, 0]],
+    "one": lambda weights: weights[1],
+    "joined": lambda weights: Weights.concatenate([weights, weights]),
+    "stacked": lambda weights: Weights.stack([weights, weights]),
+    "copied": copy.deepcopy,
+    "from another process": lambda weights: pickle.loads(pickle.dumps(weights)),
+}
+
+
+@pytest.mark.parametrize("make", REMADE.values(), ids=REMADE)
+def test_what_is_written_into_a_field_is_in_the_rows(make):
+    weights = make(Weights.random(3, 5, 4, joints=2, outputs=3, initial=2.0))
+    x = RNG.uniform(size=(6, 2, 5))
+    for name in WEIGHT_NAMES:
+        before = weights.activity(x)[1]
+        getattr(weights, name)[..., 0] += 0.5
+        again = Weights(**{name: getattr(weights, name) for name in WEIGHT_NAMES})
+        np.testing.assert_array_equal(weights.rows, again.rows)
+        np.testing.assert_array_equal(weights.output_weights, again.output_weights)
+        assert np.abs(weights.activity(x)[1] - before).max() > 1e-3
+
+
+def test_weights_keep_a_copy_of_what_they_are_made_of():
+    parts = [getattr(Weights.random(1, 5, 4), name).copy() for name in WEIGHT_NAMES]
+    weights = Weights(*parts)
+    kept = [matrix.copy() for matrix in (weights.rows, weights.output_weights)]
+    for part in parts:
+        part[:] = 9.0
+    for matrix, before in zip((weights.rows, weights.output_weights), kept):
+        np.testing.assert_array_equal(matrix, before)
+
+
+@pytest.mark.parametrize(
+    "pick", [lambda w: w[0][0], lambda w: w[0, 1], lambda w: w[:, 1]], ids=["one", "unit", "units"]
+)
+def test_an_index_picks_networks_only(pick):
+    with pytest.raises(ValueError, match=r"rows must have shape \(.*\), got \("):
+        pick(Weights.random(3, 5, 4))
 
 
 # --- radians to newton metres, and files ----------------------------------------------------

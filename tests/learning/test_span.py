@@ -15,7 +15,6 @@ from ddlib.learning import (
     WindowNetwork,
     effective_steps,
     jacobian,
-    rows,
     with_change,
     with_ones,
 )
@@ -66,7 +65,7 @@ def outside(change, x):
 @pytest.mark.parametrize("momentum, epochs", [(0.0, 1), (0.9, 50)])
 def test_updates_lie_in_the_span_of_the_windows(few, momentum, epochs):
     begun = start()
-    change = rows(descend(begun, few, 0.1, momentum, epochs)) - rows(begun)
+    change = descend(begun, few, 0.1, momentum, epochs).rows - begun.rows
     x = with_ones(few.x)
     assert np.linalg.matrix_rank(x) == 6 < INPUTS
     assert outside(change, x) < 1e-13
@@ -78,7 +77,7 @@ def test_a_change_is_singular_value_times_accumulated_error(data):
     """The sum of back-propagated errors with momentum, by our own numpy, against the weights."""
     along, begun, eps, alpha = Directions.of(data), start(), 0.02, 0.8
     x, h = with_ones(data.x), len(begun.hidden_bias)
-    w, second = rows(begun), begun.output_weights.copy()
+    w, second = begun.rows.copy(), begun.output_weights.copy()
     step, step_second, memory, total = 0 * w, 0 * second, 0, 0
     for _ in range(40):
         hidden = 1 / (1 + np.exp(-x @ w[:h].T))
@@ -91,7 +90,7 @@ def test_a_change_is_singular_value_times_accumulated_error(data):
         step_second = alpha * step_second - eps * (delta.T @ hidden)
         w, second = w + step, second + step_second
     trained = descend(begun, data, eps, alpha, 40)
-    np.testing.assert_allclose(rows(trained), w, atol=1e-12)
+    np.testing.assert_allclose(trained.rows, w, atol=1e-12)
     expected = -eps * along.values * (along.cases.T @ total).T
     np.testing.assert_allclose(along.along(trained) - along.along(begun), expected, atol=1e-12)
 
@@ -155,8 +154,8 @@ def test_prediction_is_descent_of_the_linearised_network(data):
     course = Lazy(weights, data).predict(rate, [0, 5, 200], momentum, warm_up)
     for k, epoch in enumerate((0, 5, 200)):
         np.testing.assert_allclose(course.error[k].ravel(), errors[epoch], atol=1e-10)
-    after, size = course.weights[2], rows(weights).size
-    np.testing.assert_allclose((rows(after) - rows(weights)).ravel(), last[:size], atol=1e-10)
+    after, size = course.weights[2], weights.rows.size
+    np.testing.assert_allclose((after.rows - weights.rows).ravel(), last[:size], atol=1e-10)
     second = (after.output_weights - weights.output_weights).ravel()
     np.testing.assert_allclose(second, last[size:], atol=1e-10)
     assert abs(last[size:]).max() > 1e-3

@@ -63,7 +63,8 @@ def test_a_tile_for_each_claim_with_all_that_the_file_says():
 
 def test_the_picture_of_the_draws(make):
     draws = np.linspace(0.2, 0.4, 2001)
-    text = wall._draws(make({"from": 0.1, "to": 0.5}, draws, Printed("0.30")))
+    claim = make({"from": 0.1, "to": 0.5}, draws, Printed("0.30"))
+    text = wall.Tiles([claim])._repr_markdown_()
     parts = re.findall(r'<i class="(\w+)" style="left:([\d.]+)%(?:;width:([\d.]+)%)?">', text)
     found = {name: (float(left), float(wide or 0)) for name, left, wide in parts}
     assert found["median"][0] == pytest.approx(50, abs=0.1)
@@ -73,7 +74,7 @@ def test_the_picture_of_the_draws(make):
     assert found["band"][0] == pytest.approx(100 - sum(found["band"]), abs=0.2)
     assert "from 0.205 to 0.395, median 0.300; reproduced from 0.100 to 0.500; printed 0.30" in text
     factor = make({"factor": 2}, np.linspace(9.0, 11.0, 50), Printed("10"))
-    assert "reproduced from 5.00 to 20.0" in wall._draws(factor)
+    assert "; reproduced from 5.00 to 20.0" in wall.Tiles([factor])._repr_markdown_()
 
 
 def test_what_would_have_changed_the_verdict(make, monkeypatch):

@@ -44,20 +44,26 @@ def launch():
     """A running browser; raises FileNotFoundError when there is none."""
     from playwright.sync_api import sync_playwright
 
+    with sync_playwright() as playwright, launched(playwright) as browser:
+        yield browser
+
+
+@contextmanager
+def launched(playwright):
+    """As `launch`, by a Playwright that runs already: of two, the second would not start."""
     if FIREFOX:
-        with sync_playwright() as playwright, firefox.launched(playwright) as browser:
+        with firefox.launched(playwright) as browser:
             yield browser
         return
     path = find()
     if path is None:
         raise FileNotFoundError(HOW_TO_GET_ONE)
     flags = [*FLAGS, "--no-sandbox"] if os.geteuid() == 0 else FLAGS
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=path, args=flags)
-        try:
-            yield browser
-        finally:
-            browser.close()
+    browser = playwright.chromium.launch(executable_path=path, args=flags)
+    try:
+        yield browser
+    finally:
+        browser.close()
 
 
 class QuietHandler(SimpleHTTPRequestHandler):

@@ -25,6 +25,7 @@ from tornado import httpserver, netutil, web, websocket
 READY = "WebDriver BiDi listening on "
 MOST = 2**30  # bytes of a message: a screenshot is one
 NAMES = ("firefox-esr", "firefox")
+HOW_TO_GET_ONE = "no Firefox found: apt-get install firefox-esr, or set FIREFOX"
 
 CALM = """{
   const ask = window.matchMedia;
@@ -73,7 +74,7 @@ class Between(websocket.WebSocketHandler):
 def launched(playwright):
     """A running Firefox, as Playwright's browsers are."""
     if find() is None:
-        raise FileNotFoundError("no Firefox found: apt-get install firefox-esr, or set FIREFOX")
+        raise FileNotFoundError(HOW_TO_GET_ONE)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "firefox"
         path.write_text(f'#!/bin/sh\nexec {shlex.join([sys.executable, __file__])} "$@"\n', "utf-8")

@@ -31,6 +31,16 @@ def plain(page: str) -> str:
     return f"<!doctype html>{head}<body>{main}</body></html>"
 
 
+def runs_through(tab, site: str, page: str) -> None:
+    """Open a page and run it: each cell that a reader can run ends, and none complains."""
+    tab.goto(f"{site}/{page}.html")
+    tab.get_by_role("button", name="Run this page").click()
+    tab.locator(IDLE).wait_for(timeout=900_000)
+    assert all(times := tab.locator(".live-time").all_inner_texts())
+    assert len(times) == len(live.live_cells(lesson(page)))
+    assert not tab.locator(".live-error, .live-warning, .live-note:has(a)").all_inner_texts()
+
+
 @contextmanager
 def served(folder: Path, pages: Iterable[str]) -> Iterator[str]:
     """The address of such pages on a server of their own; skips where no mirror is named."""

@@ -14,8 +14,8 @@ import numpy as np
 from book_pages import ROOT, code_cells, module_of
 from ipywidgets.embed import embed_data
 
+from ddlib.learning.network import WEIGHT_NAMES
 from ddlib.widgets import bundle
-from ddlib.widgets.engine import _plain as plain
 
 LESSONS = ROOT / "book" / "workshop" / "chapters" / "widgets"
 """Where widgets of single lessons and their scripts are."""
@@ -107,7 +107,7 @@ def write(field, text: str) -> None:
 
 def flat(weights) -> np.ndarray:
     """A network's weights in the page's order."""
-    return np.concatenate([np.ravel(getattr(weights, name)) for name in plain._FIELDS])
+    return np.concatenate([np.ravel(getattr(weights, name)) for name in WEIGHT_NAMES])
 
 
 def drag(page, box, *places) -> tuple[float, float]:

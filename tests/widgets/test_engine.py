@@ -137,7 +137,7 @@ def test_activities_and_torques_of_committed_networks(engine, setup):
     test = split(setup.record())[1]
     windows = sliding_windows(test.q, 21, test.motion)
     for model in (results.networks(21, setup.name)[k] for k in (0, 24)):
-        weights = np.frombuffer(plain._weight_bytes(model), "<f4").tolist()
+        weights = np.frombuffer(plain.weight_bytes(model), "<f4").tolist()
         given = [plain.network(model), weights, windows.reshape(len(windows), -1).tolist()]
         hidden, output, torque = (np.array(x) for x in zip(*engine(ACTIVITY, given)))
         np.testing.assert_allclose(torque, model.torque(windows), rtol=0, atol=1e-9)

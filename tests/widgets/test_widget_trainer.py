@@ -102,7 +102,7 @@ def test_the_course_is_ddlibs(evaluate, widget, monkeypatch, inputs, shift, mome
         setattr(descent, matrix, getattr(descent, matrix).double())
     errors = []
     for k in range(epochs + 1):
-        if k % study._CHECK == 0:
+        if k % trainer.CHECK == 0:
             square = np.square(descent.weights()[0].activity(data.x)[1] - data.y).mean(0)
             errors.append(np.sqrt((square / data.y.var(0)).mean()))
         if k < epochs:

@@ -142,7 +142,7 @@ class Finder:
 class _Serial:
     """In place of a pool of threads: the page has one."""
 
-    def __init__(self, workers):
+    def __init__(self, workers, **options):
         pass
 
     def __enter__(self):
@@ -180,11 +180,9 @@ class Descent:
     """`ddlib.learning.Descent` by numpy, in double precision."""
 
     def __init__(self, weights, x, y, eps, momentum):
-        from ddlib.learning.network import rows
-
         n, self.hidden = weights.hidden_bias.shape
         self.shape, self.members = weights.hidden_weights.shape[-2:], n
-        first = rows(weights)
+        first = weights.rows
         self.rows = first.shape[1]
         self.first = first.reshape(n * self.rows, -1).astype(float)
         self.second = weights.output_weights.astype(float)

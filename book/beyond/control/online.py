@@ -43,13 +43,9 @@ class _OnlineNetwork:
         weights = model.weights
         self.inputs, self.outputs = model.inputs, model.outputs
         self._low, self._gain = (x[:, None] for x in (self.inputs.low, self.inputs.gain))
-        flat = [
-            x.reshape(*x.shape[:-2], -1) for x in (weights.hidden_weights, weights.direct_weights)
-        ]
-        self.hidden = np.concatenate([flat[0], weights.hidden_bias[..., None]], -1)
-        self.output = np.concatenate(
-            [weights.output_weights, flat[1], weights.output_bias[..., None]], -1
-        )
+        units = weights.hidden_bias.shape[-1]
+        self.hidden = weights.rows[..., :units, :]
+        self.output = np.concatenate([weights.output_weights, weights.rows[..., units:, :]], -1)
 
     def features(self, windows) -> tuple[np.ndarray, np.ndarray]:
         """What the hidden units and the output units see of windows, a row for each case.

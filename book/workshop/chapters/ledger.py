@@ -33,7 +33,7 @@ from workshop.report.evidence.cards import (
 )
 from workshop.report.evidence.claims import Claim, load
 from workshop.report.evidence.verdicts import DECIDED, share_told
-from workshop.report.evidence.wall import Tiles, home, mark, window
+from workshop.report.evidence.wall import Tiles, home, mark, rendered, window
 from workshop.report.measures.filters import parts_sum_up
 
 _FILE = BOOK / "errata.yml"  # Where the errata are kept
@@ -92,11 +92,8 @@ def folded(name: str, head: str, table: Table) -> _Markdown:
 def legend() -> _Markdown:
     """What each sign means; with a script they are buttons that filter."""
     words = {word: f"{word}, {OWN[word]}" for word in ("reproduced", "not reproduced", "undecided")}
-    signs = (
-        f'<span data-verdict="{word}">{mark(word)} {words.get(word, word)}</span>'
-        for word in (*WORDS, *LISTS)
-    )
-    return _Markdown(f'<p class="claim-legend">{" ".join(signs)}</p>')
+    signs = [(word, words.get(word, word)) for word in (*WORDS, *LISTS)]
+    return _Markdown(rendered("legend", signs=signs))
 
 
 def counts() -> Table:
@@ -133,21 +130,22 @@ def cells_by_reading(words: str) -> tuple[int, dict[str, int]]:
 
 
 def _fold(name: str, verdict: str, head: str, inside: Iterable[str]) -> str:
-    first = f'<details class="claim card-of-rows" id="card-{name}" data-verdict="{verdict}">'
-    return "\n\n".join([f"{first}\n<summary>{head}</summary>", *inside, "</details>"])
+    return rendered("fold", name=name, verdict=verdict, head=head, inside=inside)
 
 
 def _card(card: Card) -> str:
-    word, says = card.word(Claim.judge), html.escape(card.says, quote=False)
-    sign = card.sign(Claim.judge)
-    signs = "".join(mark(claim.judge()) for claim in card.deciding)
-    strip = f" <i>{signs}</i>" if len(card.deciding) > 1 else ""
-    spread, where = card.spread(Claim.judge), card.where
+    sign, spread = card.sign(Claim.judge), card.spread(Claim.judge)
     best = card.under(next(iter(spread), ""))
-    if best.verdict(Claim.judge) != card.verdict(Claim.judge):
-        named = f'<span class="visually-hidden">{best.word(Claim.judge)}</span>'
-        where = f"best {named}{mark(best.sign(Claim.judge))} · {where}"
-    head = f"{mark(sign)} <b>{word}</b> <span>{says}{strip}</span> <small>{where}</small>"
+    better = best.verdict(Claim.judge) != card.verdict(Claim.judge)
+    head = rendered(
+        "card",
+        sign=sign,
+        word=card.word(Claim.judge),
+        says=html.escape(card.says, quote=False),
+        rows=[claim.judge() for claim in card.deciding],
+        best={"word": best.word(Claim.judge), "sign": best.sign(Claim.judge)} if better else None,
+        where=card.where,
+    )
     rows = [claim for row in card.rows.values() for claim in row]
     readings = ", ".join(
         f"{verdict_word} with {reading}" for reading, verdict_word in spread.items()
@@ -163,28 +161,19 @@ def _tiles(claims: Iterable[Claim]) -> str:
 
 
 def _grid(card: Card) -> str:
-    """Readings down, windows across, in each cell the signs of its rows; empty for a single row."""
-    widths = sorted({str(window(c) or "any") for row in card.rows.values() for c in row})
+    """A table of the rows by their readings and windows; empty for a single row."""
+
+    def size(claim: Claim) -> str:
+        return str(window(claim) or "any")
+
+    widths = sorted({size(claim) for row in card.rows.values() for claim in row})
     if len(widths) < 2 and len(card.rows) < 2:
         return ""
-
-    def line(tag: str, cells: Iterable[str]) -> str:
-        first, *others = cells
-        rest = "".join(f"<{tag}>{cell}</{tag}>" for cell in others)
-        return f'<tr><th scope="row">{first}</th>{rest}</tr>'
-
-    def signs(row: Iterable[Claim], width: str) -> str:
-        return " ".join(
-            f'<a href="#claim-{c.id}" title="{html.escape(c.claim)}">{mark(c.judge())}</a>'
-            for c in row
-            if str(window(c) or "any") == width
-        )
-
-    heads = ("window", *widths)
-    lines = [line("th", heads)]
-    for name, row in card.rows.items():
-        lines.append(line("td", (name or "rows", *(signs(row, width) for width in widths))))
-    return f'<table class="claim-grid">{"".join(lines)}</table>'
+    lines = [
+        (name or "rows", [[claim for claim in row if size(claim) == width] for width in widths])
+        for name, row in card.rows.items()
+    ]
+    return rendered("grid", widths=widths, lines=lines)
 
 
 def _unit_fits(unit: int, width: int) -> bool:

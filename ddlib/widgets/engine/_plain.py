@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import fields
+from math import prod
 
 import numpy as np
 
 from ddlib.control import PID
 from ddlib.dynamics import Arm
 from ddlib.effects import CoulombFriction, Effects, Quantisation, Saturation, ViscousFriction
-from ddlib.learning import Scaler, TorqueModel
+from ddlib.learning import Scaler, TorqueModel, Weights
 from ddlib.setups import Setup
 from ddlib.simulation import CONTROL_STEP, Recording
 from ddlib.trajectories import MOTION_SECONDS
-
-# Order of the weights in `_weight_bytes`.
-_FIELDS = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
 
 
 def plant(arm: Arm, effects: Effects) -> dict:
@@ -76,7 +75,7 @@ def loop(setup: Setup, recording: Recording) -> dict:
 
 
 def network(model: TorqueModel) -> dict:
-    """Layout and scaling of one network; `_weight_bytes` has its weights."""
+    """Layout and scaling of one network; `weight_bytes` has its weights."""
     weights = model.weights if isinstance(model, TorqueModel) else None
     if weights is None or weights.hidden_bias.ndim != 1:
         raise TypeError(f"model must be a single network, got {model!r}")
@@ -93,16 +92,25 @@ def network(model: TorqueModel) -> dict:
     }
 
 
-def _weight_bytes(model: TorqueModel) -> bytes:
-    """All weights of one network as little-endian float32, as committed, in the order `_FIELDS`."""
-    parts = [np.ravel(getattr(model.weights, name)) for name in _FIELDS]
+def weight_bytes(model: TorqueModel) -> bytes:
+    """All weights of one network as little-endian float32, as committed: field after field."""
+    parts = [np.ravel(getattr(model.weights, field.name)) for field in fields(Weights)]
     return np.concatenate(parts).astype("<f4").tobytes()
+
+
+def weights_of(numbers, layout: dict) -> Weights:
+    """The network whose weights the page has in one array, in the order of `weight_bytes`."""
+    hidden, outputs, joints, width = (layout[n] for n in ("hidden", "outputs", "joints", "width"))
+    shapes = [(hidden, joints, width), (hidden,), (outputs, hidden)]
+    shapes += [(outputs, joints, width), (outputs,)]
+    parts = np.split(numbers, np.cumsum([prod(shape) for shape in shapes])[:-1])
+    return Weights(*(part.reshape(shape) for part, shape in zip(parts, shapes)))
 
 
 def networks(models: Iterable[TorqueModel]) -> tuple[list[dict], bytes]:
     """What ``static/sliding.js`` takes: `network` of each model, and the weights of all."""
     models = list(models)
-    return [network(model) for model in models], b"".join(map(_weight_bytes, models))
+    return [network(model) for model in models], b"".join(map(weight_bytes, models))
 
 
 def _scaling(scaler: Scaler) -> dict:

@@ -25,19 +25,27 @@ from ddlib.setups import INITIAL, JOINT_DAMPING, Setup
 from ddlib.simulation import LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG
 from ddlib.widgets.base import PageWidget
-from ddlib.widgets.engine._plain import _FIELDS, loop, plant
+from ddlib.widgets.engine._plain import loop, plant, weights_of
 from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.picker import _pad, _parameters
 from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.still import still_picture
 
+# By these a page trains unless it says otherwise, and so does the study of what its readers see.
+WIDTH = 21  # samples of the window
+EVERY = 5  # of the training windows every fifth is learnt from; of trajectory 6 all count
+EPOCHS = 2000  # of a run
+CHECK = 5  # epochs between two looks at errors and shapes
+LEVEL = 0.2  # RMSS in training below which the error counts as gone
+MOMENTUM = 0.98  # acceleration
+SHIFTS = 5  # draws of torques shifted in time
+
 _FINEST = 5e-5  # step of the encoder, rad: readings are sent as int16
-_EVERY = 5  # of the training windows the page shows every fifth; of trajectory 6 all
 _SCALINGS = {"centred": (-1.0, 1.0), "printed": (0.0, 1.0)}  # ranges of the inputs
 _STEPS = (0.25, 0.5, 1.0, 2.0, 4.0)  # step sizes, over `ddlib.learning.default_rate`
 _MOMENTA = (0.0, 0.5, 0.9, 0.95, 0.98, 0.995)
 _SEEDS = 50  # sets of initial weights that can be chosen
-_SEED, _INPUTS, _STEP, _MOMENTUM = 1, "printed", 1.0, 0.98  # choices at the start
+_SEED, _INPUTS, _STEP = 1, "printed", 1.0  # choices at the start
 _ERRORS = (0.03, 2.0)  # range of the errors shown
 
 _CHOICES = ("extents_deg", "seed", "inputs", "shifted", "step_size", "momentum")
@@ -50,7 +58,7 @@ _HINT = (
 )
 
 
-def first_weights(seed: int, width: int = 21, hidden: int = HIDDEN_UNITS) -> Weights:
+def first_weights(seed: int, width: int = WIDTH, hidden: int = HIDDEN_UNITS) -> Weights:
     """The page's random initial weights, as an ensemble of one network.
 
     Parameters
@@ -61,25 +69,12 @@ def first_weights(seed: int, width: int = 21, hidden: int = HIDDEN_UNITS) -> Wei
         Samples of the window; hidden units.
     """
     state, joints = integer("seed", seed, 0, 2**32 - 1), len(JOINTS)
-    shapes = _shapes(hidden, joints, joints, width)
-    parts = {}
-    for name in _FIELDS:
-        draws = np.empty(int(np.prod(shapes[name])))
-        for i in range(draws.size):
-            state = (state + 0x6D2B79F5) % 2**32
-            draws[i] = INITIAL * (2 * _mixed(state) / 2**32 - 1)
-        parts[name] = draws.reshape(1, *shapes[name])
-    return Weights(**parts)
-
-
-def _shapes(hidden: int, outputs: int, joints: int, width: int) -> dict[str, tuple]:
-    return {
-        "hidden_weights": (hidden, joints, width),
-        "hidden_bias": (hidden,),
-        "output_weights": (outputs, hidden),
-        "direct_weights": (outputs, joints, width),
-        "output_bias": (outputs,),
-    }
+    layout = {"hidden": hidden, "outputs": joints, "joints": joints, "width": width}
+    draws = np.empty(hidden * (joints * width + 1) + joints * (hidden + joints * width + 1))
+    for i in range(draws.size):
+        state = (state + 0x6D2B79F5) % 2**32
+        draws[i] = INITIAL * (2 * _mixed(state) / 2**32 - 1)
+    return weights_of(draws, layout)[None]
 
 
 def _mixed(state: int) -> int:
@@ -178,7 +173,7 @@ class NetworkTrainer(PageWidget):
     inputs = t.Enum(tuple(_SCALINGS), _INPUTS).tag(sync=True)
     shifted = t.Bool(False).tag(sync=True)
     step_size = t.Enum(_STEPS, _STEP).tag(sync=True)
-    momentum = t.Enum(_MOMENTA, _MOMENTUM).tag(sync=True)
+    momentum = t.Enum(_MOMENTA, MOMENTUM).tag(sync=True)
     epoch = t.Int(0).tag(sync=True)
     reached = t.Dict(help="the page's last results, and the choices behind them", read_only=True)
     reached.tag(sync=True)
@@ -195,13 +190,13 @@ class NetworkTrainer(PageWidget):
         setup: Setup = JOINT_DAMPING,
         extents_deg=APPENDIX_I,
         *,
-        width: int = 21,
+        width: int = WIDTH,
         hidden: int = HIDDEN_UNITS,
-        epochs: int = 2000,
-        check: int = 5,
-        level: float = 0.2,
-        momentum: float = _MOMENTUM,
-        shifts: int = 5,
+        epochs: int = EPOCHS,
+        check: int = CHECK,
+        level: float = LEVEL,
+        momentum: float = MOMENTUM,
+        shifts: int = SHIFTS,
         code: str = "",
     ):
         like("setup", setup, "Setup")
@@ -244,7 +239,7 @@ class NetworkTrainer(PageWidget):
             },
             "runs": len(recording.q),
             "samples": samples,
-            "every": _EVERY,
+            "every": EVERY,
             "encoder": step,
             "ranges": {name: list(pair) for name, pair in _SCALINGS.items()},
             "target": list(TARGET_RANGE),
@@ -314,21 +309,14 @@ class NetworkTrainer(PageWidget):
         results = dict.fromkeys(("weights", "model", *_NUMBERS))
         if reached and all(reached[name] == value for name, value in choices.items()):
             results |= {name: reached[name] for name in _NUMBERS}
-            results["weights"] = weights = _weights(self.weight_bytes, self.spec["layout"])
+            numbers = np.frombuffer(self.weight_bytes, "<f8")
+            results["weights"] = weights = weights_of(numbers, self.spec["layout"])
             scaling = reached["scaling"]
             ranges = _SCALINGS[self.inputs], TARGET_RANGE
             pair = (_scaler(scaling[name], to) for name, to in zip(("inputs", "outputs"), ranges))
             results["model"] = TorqueModel(weights, *pair, LOG_STEP)
         with self.hold_trait_notifications():
             self._keep(**results)
-
-
-def _weights(content: bytes, layout: dict) -> Weights:
-    """One network from the page's bytes."""
-    shapes = _shapes(**layout)
-    ends = np.cumsum([np.prod(shapes[name]) for name in _FIELDS])
-    parts = np.split(np.frombuffer(content, "<f8"), ends[:-1])
-    return Weights(**{name: part.reshape(shapes[name]) for name, part in zip(_FIELDS, parts)})
 
 
 def _scaler(scaling: dict, target) -> Scaler:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-from dataclasses import replace
 
 import numpy as np
 
@@ -12,7 +11,6 @@ from beyond.studies.loop import learners
 from beyond.studies.loop.abreast import repeated, run_abreast
 from ddlib.control import Feedforward
 from ddlib.dynamics import Arm, with_load
-from ddlib.learning import Weights
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.trajectories import Trajectory, pick_and_place
 from workshop.report.code_hash import study
@@ -113,8 +111,7 @@ def _rates(draw: learners.Draw) -> dict:
     """Six trials of one motion at several rates: the last error, and who was stopped."""
     t, reference = learners.motions(draw)["the same"]
     many, rates = len(_RATES), np.array(_RATES)[:, None]
-    tiled = {n: np.repeat(x, many, axis=0) for n, x in vars(draw.untrained.weights).items()}
-    model = replace(draw.untrained, weights=Weights(**tiled))
+    model = draw.untrained[[0] * many]
     pupils = {
         "exact terms": learners.Terms(
             RigidBodyTerms(learners.NAMES), draw, learners.TERMS_RATE * rates

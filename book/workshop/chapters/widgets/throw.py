@@ -16,7 +16,7 @@ from ddlib.setups import JOINT_DAMPING, Setup, predict
 from ddlib.simulation import CONTROL_STEP, LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS
 from ddlib.widgets.base import PageWidget
-from ddlib.widgets.engine._plain import _weight_bytes, gains, network, plant
+from ddlib.widgets.engine._plain import gains, network, plant, weight_bytes
 from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.still import START, encoded
 
@@ -87,7 +87,7 @@ class ThrownArm(PageWidget):
             "trajectories": [_trajectory(k) for k in order],
             "units": _units(model),
         }
-        self._keep(spec=spec, weights=_weight_bytes(model), still=still, still_alt=alt)
+        self._keep(spec=spec, weights=weight_bytes(model), still=still, still_alt=alt)
         super().__init__()
 
 

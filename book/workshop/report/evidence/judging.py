@@ -48,9 +48,9 @@ _ROUNDING = {
 
 
 def _distance(claim: Claim) -> float:
-    """Relative distance of the value from the nearest edge of its bands; NaN if it has none."""
-    value, edges = float(claim.measured().value), claim.edges()
-    return min((abs(value - e) / max(abs(e), 1e-300) for e in edges), default=math.nan)
+    """Relative distance of the value from the nearest edge of its bands that is not 0, or NaN."""
+    value, edges = float(claim.measured().value), filter(None, claim.edges())
+    return min((abs(value - edge) / abs(edge) for edge in edges), default=math.nan)
 
 
 def _line(claim: Claim) -> str:
@@ -64,7 +64,8 @@ def _line(claim: Claim) -> str:
     note = "stands" if fresh != claim.verdict else ""
     note = "CONTRADICTED" if claim.judge() != claim.verdict else note
     drawn = ", ".join(f"{100 * share:.1f} % {name}" for name, share in claim.shares().items())
-    value, away = f"{float(claim.measured().value):.4g}", f"{100 * _distance(claim):.1f} %"
+    value, distance = f"{float(claim.measured().value):.4g}", _distance(claim)
+    away = "-" if math.isnan(distance) else f"{100 * distance:.1f} %"
     cells = (claim.id, value, away, drawn or "-", fresh, claim.verdict, note)
     return " | ".join(cells).rstrip(" |")
 

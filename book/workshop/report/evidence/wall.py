@@ -10,8 +10,10 @@ import html
 import inspect
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from ddlib.tables import significant, typeset
 from workshop.report.evidence.cards import LISTS, WORDS, worded
@@ -43,6 +45,12 @@ _AFTER = {
     "trial, change": "set after a first trial had been seen, and changed later",
 }
 
+_TEMPLATES = Environment(  # for Markdown: a template says itself what it escapes
+    loader=FileSystemLoader(Path(__file__).with_name("templates")),
+    trim_blocks=True,
+    undefined=StrictUndefined,
+)
+
 _CODE = "../_modules"  # The folder of the pages that show source, beside that of the chapters
 
 _MIDDLE = (0.025, 0.5, 0.975)  # Quantiles of the draws that a tile's picture shows
@@ -54,6 +62,11 @@ def mark(verdict: str) -> str:
     """A verdict's sign, for the page."""
     name = verdict.replace(" ", "-")
     return f'<span class="sign v-{name}" aria-hidden="true">{_MARKS[verdict]}</span>'
+
+
+def rendered(name: str, /, **values) -> str:
+    """A template of the folder beside this module, as Markdown."""
+    return _TEMPLATES.get_template(f"{name}.md.jinja").render(mark=mark, **values)
 
 
 @dataclass(frozen=True)
@@ -75,53 +88,30 @@ def chapter_tiles(chapter: str) -> Tiles:
     return Tiles(of_chapter(chapter), chapter)
 
 
-def _text(text: str) -> str:
-    return html.escape(typeset(text), quote=False)
-
-
 def _tile(claim: Claim, on: str) -> str:
-    verdict = claim.judge()
-    changed = f'<span title="Band {_AFTER[claim.after]}">†</span>' if claim.after else ""
-    summary = f"{mark(verdict)} <b>{worded(claim, verdict)}</b>{changed} {_text(claim.claim)}"
-    lines = [
-        f'<details class="claim" id="claim-{claim.id}">',
-        f"<summary>{summary}</summary>",
-        "",
-        *_body(claim, on),
-        "",
-        "</details>",
-    ]
-    return "\n".join(lines)
-
-
-def _body(claim: Claim, on: str) -> list[str]:
-    """What is inside a tile, as Markdown."""
-    source = (
-        "This book's own claim"
-        if claim.printed == NOT_IN_PAPER
-        else f"Printed: {claim.as_printed()}"
+    verdict, width, ours = claim.judge(), window(claim), claim.our_value()
+    own = claim.printed == NOT_IN_PAPER
+    judged = f"Judged: {claim.verdict_with_share()} ({_bands(claim)})." if claim.band else ""
+    return rendered(
+        "claim",
+        claim=claim,
+        verdict=verdict,
+        word=worded(claim, verdict),
+        changed=_AFTER.get(claim.after),
+        says=html.escape(typeset(claim.claim), quote=False),
+        source=typeset("This book's own claim" if own else f"Printed: {claim.as_printed()}"),
+        ours=typeset(ours),
+        width=None if str(width) in f"{claim.claim} {ours}" else width,
+        draws=_draws(claim),
+        judged=typeset(worded(claim, judged)),
+        why=typeset(claim.why),
+        head=_HEADS.get(claim.verdict, "What would have refuted it"),
+        refuted=typeset(claim.refuted),
+        links=_links(claim, on),
     )
-    width, ours = window(claim), claim.our_value()
-    known = width is None or str(width) in f"{claim.claim} {ours}"
-    lines = [
-        f"{typeset(source)} ({claim.where}). "
-        f"**Here: {typeset(ours)}{'' if known else f' (window {width})'}**",
-        "",
-    ]
-    picture = _draws(claim)
-    if picture:
-        lines += [picture, ""]
-    judged = ""
-    if claim.band:
-        judged = typeset(worded(claim, f"Judged: {claim.verdict_with_share()} ({_bands(claim)}). "))
-        judged += f"† The band was {_AFTER[claim.after]}. " if claim.after else ""
-    head = _HEADS.get(claim.verdict, "What would have refuted it")
-    lines += [f"{judged}{typeset(claim.why)}", "", f"*{head}:* {typeset(claim.refuted)}", ""]
-    lines.append(_links(claim, on))
-    return lines
 
 
-def _links(claim: Claim, on: str) -> str:
+def _links(claim: Claim, on: str) -> list[str]:
     page, links = _page_of(claim), []
     up = "" if on == LEDGER else "../"  # evidence pages have a folder of their own
     if page and claim.chapter != on:
@@ -130,7 +120,7 @@ def _links(claim: Claim, on: str) -> str:
         links.append(f'<a href="{up}ledger.html#claim-{claim.id}">in the ledger</a>')
     if claim.is_measured:
         links.append(f'<a href="{up}{_source(claim)}">code</a>')
-    return " · ".join(links)
+    return links
 
 
 def _source(claim: Claim) -> str:
@@ -139,35 +129,40 @@ def _source(claim: Claim) -> str:
     return f"{_CODE}/{measure.__module__.replace('.', '/')}.html#{measure.__name__}"
 
 
-def _draws(claim: Claim) -> str:
+@dataclass(frozen=True)
+class _Draws:
     """A claim's draws in a small picture: 95 % of them, their median, band and printed value."""
+
+    description: str
+    left: str  # the scale's ends, in words
+    right: str
+    spans: list[tuple[str, float, float | None]]  # name, start and width, per cent of the scale
+
+
+def _draws(claim: Claim) -> _Draws | None:
     if not claim.band or "is" in claim.band:
-        return ""
+        return None
     replicates = claim.measured().replicates
     if replicates is None:
-        return ""
+        return None
     low, median, high = np.quantile(np.asarray(replicates, float), _MIDDLE)
     band = _range(claim)
     given = float(claim.printed) if isinstance(claim.printed, Printed) else None
     place, ends = _scale([low, high, *filter(np.isfinite, band), *([given] if given else [])])
-    parts = [
-        ("band", *map(place, band)),
-        ("draws", place(low), place(high)),
-        ("median", place(median)),
-    ]
+
+    def span(name: str, start: float, end: float) -> tuple[str, float, float]:
+        return name, place(start), max(place(end) - place(start), 0.5)
+
+    spans = [span("band", *band), span("draws", low, high), ("median", place(median), None)]
     if given is not None:
-        parts.append(("printed", place(given)))
+        spans.append(("printed", place(given), None))
     description = (
         f"95 % of the draws from {significant(low)} to {significant(high)}, median "
         f"{significant(median)}; {worded(claim, 'reproduced')} {_words(band)}"
         + (f"; printed {claim.printed.text}" if given is not None else "")
     )
-    spans = "".join(_span(*part) for part in parts)
-    left, right = (significant(end, 2) for end in ends)
-    return (
-        f'<div class="claim-draws" role="img" aria-label="{html.escape(typeset(description))}">'
-        f"<small>{typeset(left)}</small><span>{spans}</span><small>{typeset(right)}</small></div>"
-    )
+    left, right = (typeset(significant(end, 2)) for end in ends)
+    return _Draws(typeset(description), left, right, spans)
 
 
 def _range(claim: Claim) -> tuple[float, float]:
@@ -198,11 +193,6 @@ def _scale(values: Sequence[float]):
         return float(np.clip(100 * (way(value) - first) / (last - first), 0, 100))
 
     return place, (float(back(first)), float(back(last)))
-
-
-def _span(name: str, start: float, end: float | None = None) -> str:
-    width = "" if end is None else f";width:{max(end - start, 0.5):.1f}%"
-    return f'<i class="{name}" style="left:{start:.1f}%{width}"></i>'
 
 
 def window(claim: Claim) -> int | None:

@@ -16,7 +16,6 @@ from ddlib.learning import (
     Weights,
     cases,
     jacobian,
-    rows,
     with_change,
     with_ones,
 )
@@ -256,7 +255,7 @@ def outside_the_span(taken: int = 12, epochs: int = 100) -> Measured:
         error = (now.activity(x)[1] - y).ravel()
         step = 0.9 * step - 0.1 * error @ jacobian(now, x).reshape(error.size, -1)
         now = with_change(now, step)
-    change, windows = rows(now) - rows(start), with_ones(x)
+    change, windows = now.rows - start.rows, with_ones(x)
     left = change - np.linalg.lstsq(windows.T, change.T, rcond=None)[0].T @ windows
     share = float(np.linalg.norm(left) / np.linalg.norm(change))
     return Measured(share, f"{scientific(share)}, {taken} windows of {windows.shape[1] - 1} inputs")

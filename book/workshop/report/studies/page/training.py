@@ -10,25 +10,12 @@ from ddlib import learning
 from ddlib.analysis import classify
 from ddlib.learning import TrainingSet, Weights, cases, default_rate, surrogate
 from ddlib.setups import INITIAL, JOINT_DAMPING, split
+from ddlib.widgets.engine.trainer import CHECK, EPOCHS, EVERY, LEVEL, MOMENTUM, SHIFTS, WIDTH
 from workshop.report.code_hash import study
 
-_WIDTH = 21  # Window of the networks
-
-_EVERY = 5  # Of the training windows the page shows every fifth; of trajectory 6 all
-
-_EPOCHS = 2000  # Epochs of a run in the page
-
-_CHECK = 5  # Epochs between two looks at errors and shapes
-
-_LEVEL = 0.2  # RMSS in training below which the error counts as gone
-
-_MOMENTUM = 0.98  # Acceleration of the page's descent at its start; its step is `default_rate`
-
-# What is waited for: the error below `_LEVEL`, the first direct filter called "acceleration", and
+# What is waited for: the error below `LEVEL`, the first direct filter called "acceleration", and
 # the first hidden filter with any name
 _EVENTS = ("error", "direct", "hidden")
-
-_SHIFTS = 5  # Draws of torques shifted in time
 
 
 def _page_set(scaling=(-1.0, 1.0), shifted: int | None = None) -> tuple[TrainingSet, tuple]:
@@ -37,12 +24,12 @@ def _page_set(scaling=(-1.0, 1.0), shifted: int | None = None) -> tuple[Training
     torque = training.tau[:, training.motion]
     if shifted is not None:
         torque = surrogate("shifted", torque, shifted)
-    windows, _ = cases(training, _WIDTH)
+    windows, _ = cases(training, WIDTH)
     whole = TrainingSet.from_arrays(windows, torque.reshape(-1, 2), scaling=scaling)
     samples = torque.shape[1]
-    places = np.arange(len(windows)).reshape(-1, samples)[:, ::_EVERY].ravel()
+    places = np.arange(len(windows)).reshape(-1, samples)[:, ::EVERY].ravel()
     data = replace(whole, x=whole.x[places], y=whole.y[places], step=training.step)
-    return data, data.transform(*cases(test, _WIDTH))
+    return data, data.transform(*cases(test, WIDTH))
 
 
 def _events(weights: Weights, training: np.ndarray) -> np.ndarray:
@@ -50,24 +37,24 @@ def _events(weights: Weights, training: np.ndarray) -> np.ndarray:
     direct = classify(weights.direct_weights) == "acceleration"
     hidden = classify(weights.hidden_weights) != "not analysable"
     shapes = [x.reshape(len(weights), -1).any(-1) for x in (direct, hidden)]
-    return np.stack([training < _LEVEL, *shapes], -1)
+    return np.stack([training < LEVEL, *shapes], -1)
 
 
-def _watched(weights: Weights, data: TrainingSet, test: tuple, epochs: int = _EPOCHS) -> dict:
-    """Train, looking every `_CHECK` epochs; what was seen of each network."""
-    rate = default_rate(_WIDTH) / len(data.x)
-    descent = learning.Descent(weights, data.x, data.y, rate, _MOMENTUM)
+def _watched(weights: Weights, data: TrainingSet, test: tuple, epochs: int = EPOCHS) -> dict:
+    """Train, looking every `CHECK` epochs; what was seen of each network."""
+    rate = default_rate(WIDTH) / len(data.x)
+    descent = learning.Descent(weights, data.x, data.y, rate, MOMENTUM)
     spreads = data.y.std(0), test[1].std(0)
     sets = (descent.inputs, descent.targets), learning.prepare(*test)
     first = np.full((len(weights), len(_EVENTS)), np.nan)
-    for epoch in range(0, epochs + 1, _CHECK):
+    for epoch in range(0, epochs + 1, CHECK):
         errors = [
             np.sqrt((descent.mean_square(*s) / spread**2).mean(-1))
             for s, spread in zip(sets, spreads)
         ]
         now = descent.weights()
         first[_events(now, errors[0]) & np.isnan(first)] = epoch
-        for _ in range(_CHECK if epoch < epochs else 0):
+        for _ in range(CHECK if epoch < epochs else 0):
             descent.epoch()
     named = classify(now.hidden_weights) != "not analysable"
     return {
@@ -83,13 +70,13 @@ def _page_training(members: int = 25) -> dict:
     """Networks of window 21 trained as the page trains them, on torques real and shifted."""
     rows = {}
     for name, scaling in (("centred", (-1.0, 1.0)), ("as printed", (0.0, 1.0))):
-        start = Weights.random(members, _WIDTH, initial=INITIAL)
+        start = Weights.random(members, WIDTH, initial=INITIAL)
         rows[f"{name}, real"] = _watched(start, *_page_set(scaling))
-        shares = np.array_split(np.arange(members), _SHIFTS)
+        shares = np.array_split(np.arange(members), SHIFTS)
         runs = [
             _watched(start[share], *_page_set(scaling, shifted=k)) for k, share in enumerate(shares)
         ]
         rows[f"{name}, shifted"] = {
             key: np.concatenate([run[key] for run in runs]) for key in runs[0]
         }
-    return {"members": members, "epochs": _EPOCHS, "every": _EVERY, "level": _LEVEL, "rows": rows}
+    return {"members": members, "epochs": EPOCHS, "every": EVERY, "level": LEVEL, "rows": rows}
