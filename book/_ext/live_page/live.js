@@ -96,7 +96,8 @@
     else clearTimeout(timer);
   });
   const reacts = make("label", { class: "live-react", for: "live-react" });
-  reacts.append(react, "React: what follows runs by itself, half a second after a change");
+  reacts.append(react, "React: what follows runs by itself");
+  reacts.title = "It runs half a second after a change.";
 
   // What is kept, to be taken along and to be erased.
   const told = make("summary");
@@ -105,7 +106,7 @@
   const asked = cells.filter((c) => c.kind === "answer");
   function tally() {
     const done = asked.filter((c) => mine.solved.includes(c.id)).length;
-    told.textContent = `Solved: ${done} of ${many(asked.length, "exercise")}. Save, open or erase your work`;
+    told.textContent = `Solved: ${done} of ${asked.length}. Save or erase your work`;
     for (const cell of asked)
       if (cell.solved) cell.solved.textContent = mine.solved.includes(cell.id) ? "Solved" : "";
   }
