@@ -325,12 +325,15 @@ def test_a_cell_that_is_quiet_shows_problems_alone(run):
         ("made(2)", "made(3)", False),
         ("Arm.from_links('a', Link(1.0, 1.0, 1.0, 1.0), Link(1.0, 1.0, 1.0, 1.0))",
          "Arm.from_links('a', Link(1.0, 1.0, 1.0, 1.0), Link(1.0, 1.0, 1.0, 2.0))", False),
+        ("judging(print)", "judging(print)", True),  # a function that a package's function made
+        ("judging(print)", "judging(len)", False),
         ("np.random.default_rng(1)", "np.random.default_rng(1)", True),
         ("np.random.default_rng(1)", "np.random.default_rng(2)", False),
     ],
 )  # fmt: skip
 def test_what_differs_and_what_does_not(run, one, other, same):
     head = "import numpy as np\nfrom ddlib.dynamics import Arm, Link\n"
+    head += "from workshop.chapters.exercises import judging\n"
     head += "def made(k):\n    return lambda x: k * x\n"
     prints = [run(f"{head}value = {code}", "one")[1]["prints"]["value"] for code in (one, other)]
     assert None not in prints and (prints[0] == prints[1]) == same

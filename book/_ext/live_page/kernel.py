@@ -139,10 +139,11 @@ def _only_problems(emit):
 
 
 class _Printer(pickle.Pickler):
-    """Pickles, with a cell's functions by their code, to be compared and never read."""
+    """Pickles, with functions that have no name of their own by their code, to be compared."""
 
     def reducer_override(self, value):
-        if isinstance(value, types.FunctionType) and value.__globals__ is space:
+        own = isinstance(value, types.FunctionType) and value.__globals__ is space
+        if own or (isinstance(value, types.FunctionType) and "<locals>" in value.__qualname__):
             inside = [cell.cell_contents for cell in value.__closure__ or ()]
             code = marshal.dumps(value.__code__, 2)
             return tuple, ([code, value.__defaults__, value.__kwdefaults__, inside],)

@@ -18,10 +18,15 @@
   };
   const button = (text, label, act) => {
     const el = make("button", { type: "button", class: "btn btn-sm live-button" }, text);
-    if (label) el.setAttribute("aria-label", label);
+    if (label) {
+      el.setAttribute("aria-label", label);
+      el.title = label;
+    }
     el.addEventListener("click", act);
     return el;
   };
+
+  const many = (count, what) => `${count} ${what}${count === 1 ? "" : "s"}`;
 
   // --- what a reader did: kept on this device until it is erased, if the browser keeps anything ---
   let blocked = false; // it keeps nothing: then it lasts as long as the page
@@ -91,7 +96,8 @@
     else clearTimeout(timer);
   });
   const reacts = make("label", { class: "live-react", for: "live-react" });
-  reacts.append(react, "React: what follows runs by itself, half a second after a change");
+  reacts.append(react, "React: what follows runs by itself");
+  reacts.title = "It runs half a second after a change.";
 
   // What is kept, to be taken along and to be erased.
   const told = make("summary");
@@ -100,8 +106,9 @@
   const asked = cells.filter((c) => c.kind === "answer");
   function tally() {
     const done = asked.filter((c) => mine.solved.includes(c.id)).length;
-    told.textContent = `Solved: ${done} of ${asked.length}. Your work`;
-    for (const cell of asked) cell.el.classList.toggle("live-solved", mine.solved.includes(cell.id));
+    told.textContent = `Solved: ${done} of ${asked.length}. Save or erase your work`;
+    for (const cell of asked)
+      if (cell.solved) cell.solved.textContent = mine.solved.includes(cell.id) ? "Solved" : "";
   }
   const picked = make("input", { type: "file", accept: ".json,application/json", hidden: "" });
   picked.addEventListener("change", () => takeIn(picked.files[0]));
@@ -160,7 +167,7 @@
     for (const cell of cells) if (cell.area) setText(cell, keptText(cell));
     remember();
     mark();
-    heardOf.textContent = `Your work on ${Object.keys(found.pages).length} pages is here again.`;
+    heardOf.textContent = `Your work on ${many(Object.keys(found.pages).length, "page")} is here again.`;
   }
 
   function erase() {
@@ -184,7 +191,7 @@
     `this site: ${megabytes[0]} MB, up to ${megabytes[1]} MB with all that cells import. The first ` +
     `run takes half a minute more than the page says.` +
     (lacks.length ? ` PyTorch's ${lacks.join(", ")} are not in a page: the notebook has them.` : "") +
-    (Object.keys(mine.changes).length ? " What you changed last time is kept." : "");
+    (Object.keys(mine.changes).length ? " What you changed last time comes back with it." : "");
   bar.append(begin, status, progress);
   if (asked.length) bar.append(own);
   tally();
@@ -225,6 +232,7 @@
     const tools = make("div", { class: "live-tools" });
     cell.time = make("span", { class: "live-time" });
     cell.mark = make("span", { class: "live-mark" });
+    cell.solved = make("span", { class: "live-solved" });
     const check = cell.kind === "check";
     tools.append(
       button(check ? "Check" : "Run", `${check ? "Check the answer" : "Run"}: ${cell.name}`, () =>
@@ -244,7 +252,7 @@
           beside(answer, cell),
         ),
       );
-    tools.append(cell.time, cell.mark);
+    tools.append(cell.time, cell.solved, cell.mark);
     cell.tools = tools;
     if (check) {
       cell.told.before(tools);
@@ -296,13 +304,17 @@
     fit(cell);
   }
 
+  const toRun = (count) =>
+    `${many(count, "cell")} may show what came before your change: press “Run what follows”.`;
+
   function changed(cell) {
     fit(cell);
     remember();
     if (blocked) heardOf.textContent = keptNothing;
-    mark();
+    const count = mark();
     clearTimeout(timer);
     if (react.checked) timer = setTimeout(followUp, 500);
+    else if (ready && !running) say(count ? toRun(count) : "All outputs are up to date.");
   }
 
   // --- handles: the numbers of *Change this* ---
@@ -589,6 +601,7 @@
   // --- the worker, and what is to be run ---
   let worker, ready, running, expected, loaded, interrupts, turns, asking;
   let kept = ""; // what is said while Python starts afresh and nobody waits for it
+  let ran = 0; // cells, since something was asked for
   let spread = false; // whether what follows runs, too
   let patience = 5000; // ms: a restart takes so long
   const waiting = new Set(); // cells
@@ -784,13 +797,19 @@
     if (cell.failed) drop();
     cell.asked = false;
     const count = mark();
-    const marked = count ? ` ${count} cells may show what came before your change.` : "";
-    if (!waiting.size)
+    const marked = count ? ` ${toRun(count)}` : "";
+    ran += !cell.quiet;
+    if (!waiting.size) {
+      const one = cell.name.replace(/^./, (c) => c.toUpperCase());
+      const name = ran === cells.length ? "All cells have" : ran > 1 ? `${ran} cells have` : `${one} has`;
+      const ask = react.checked ? "Now change a number." : "Now change a number, and press “Run what follows”.";
       say(
         cell.failed
           ? `${cell.stopping ? "Stopped" : "An error"} in ${cell.name}.${marked}`
-          : `${cell.name.replace(/^./, (c) => c.toUpperCase())} has run.${marked}`,
+          : `${name} run.${ran === cells.length && !count ? ` ${ask}` : marked}`,
       );
+      ran = 0;
+    }
     next();
   }
 
@@ -919,6 +938,7 @@
       return;
     }
     cells.forEach(open);
+    tally();
     begin.replaceWith(follows, all, stop, reset, reacts);
     bar.classList.add("live-on");
     bar.after(
