@@ -19,19 +19,17 @@ from pathlib import Path
 
 import nbformat
 import numpy as np
-from dd_lessons import HEADING, chapters
+from dd_lessons import chapters
 from dd_public import repository, site
-from dd_quiz import questions
+from dd_quiz import OWN, questions
 from dd_reader import ANCHOR, CHANGE_THIS, ROLE, TARGET
-from solved import Solved, changed, is_check, is_open, is_starter, settings_of, solve
+from solved import FOLD, Solved, changed, is_check, is_open, is_starter, settings_of, solve
 
 from workshop.chapters.exercises import Between, MultipleOf, OneOf
 
 ROOT = Path(__file__).parents[2]
 TUTORIAL = "use-it-on-your-arm"
 MADE = ROOT / "_build" / "assignments"
-OWN = f"## {HEADING}\n"
-ANSWER = re.compile(r"<details.*?</details>", re.DOTALL)
 EQUATION = re.compile(r"(?ms)^\$\$\n(.*?)\n\$\$[ \t]*(?:\(([\w-]+)\))?[ \t]*$")
 JUDGE = re.compile(r"from ((?:workshop|beyond)\.chapters\.\w+) import check\b")
 ENGINE = "workshop.chapters.exercises"
@@ -130,7 +128,7 @@ class Words:
         section, named = "", {inside for text in asked(lesson) for _, inside in ROLE.findall(text)}
         for cell in lesson.cells:
             if cell.cell_type == "markdown":
-                text = ANSWER.sub("", cell.source).partition(OWN)[0]
+                text = FOLD.sub("", cell.source).partition(OWN)[0]
                 for piece in re.split(r"(?m)^(?=#+ )", text):
                     head = re.match(r"#+ (.+)", piece)
                     section = head[1] if head else section
@@ -177,7 +175,7 @@ class Words:
 def asked(lesson) -> list[str]:
     """The texts of a lesson's exercises, with their roles."""
     every = "\n\n".join(c.source for c in lesson.cells if c.cell_type == "markdown")
-    own = ANSWER.sub("", every.partition(OWN)[2]).partition("\n## ")[0]
+    own = FOLD.sub("", every.partition(OWN)[2]).partition("\n## ")[0]
     return [text.strip() for text in re.split(r"(?m)^(?=\*\*\d+\. )", own) if text.strip()]
 
 
@@ -351,8 +349,8 @@ def _which(one: Solved) -> str:
 def explanations(lesson) -> list[str]:
     """The words of the solutions, without their code."""
     every = "\n\n".join(c.source for c in lesson.cells if c.cell_type == "markdown")
-    folds = ANSWER.findall(every.partition(OWN)[2])
-    told = [re.sub(r"<summary>.*?</summary>|</?details[^>]*>", "", fold) for fold in folds]
+    folds = FOLD.findall(every.partition(OWN)[2])
+    told = [fold.partition("</summary>")[2].removesuffix("</details>") for fold in folds]
     return [re.sub(r"(?s)```python\n.*?```", "", text).strip() for text in told]
 
 

@@ -10,7 +10,8 @@ from __future__ import annotations
 import re
 from html import escape
 
-from dd_lessons import HEADING, SOLUTION
+from dd_lessons import SOLUTION
+from dd_quiz import ON_YOUR_OWN
 from docutils import nodes
 from myst_nb.sphinx_ import HideCodeCellNode, depart_HideCellInput
 from sphinx.transforms import SphinxTransform
@@ -62,7 +63,7 @@ class HeadExercises(SphinxTransform):
 
     def apply(self, **kwargs):
         for section in list(self.document.findall(nodes.section)):
-            if section[0].astext() == HEADING:
+            if section[0].astext() == ON_YOUR_OWN:
                 self.head(section)
 
     def head(self, section: nodes.section):

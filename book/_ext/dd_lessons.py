@@ -35,7 +35,6 @@ RULE = (
     "{equation} for each equation that the solution has; and the time to read question and "
     "solution, at {pace} words a minute. The sum is rounded up to five minutes."
 )
-HEADING = "On your own"
 SOLUTION = "<summary>Solution</summary>"
 TITLE = re.compile(r"^\*\*(\d+)\. (.+?)\*\*(?: \(an? (\w+)\)\.)?", re.MULTILINE)
 CODE = re.compile(r"^```python\n(.*?)^```|`(mine = [^`]+)`", re.MULTILINE | re.DOTALL)
@@ -66,7 +65,7 @@ def headings(path: Path) -> list[str]:
 
 def exercises(path: Path) -> list[Exercise]:
     """All exercises of a notebook, in its order."""
-    _, _, own = "\n".join(prose(path)).partition(f"## {HEADING}\n")
+    _, _, own = "\n".join(prose(path)).partition(dd_quiz.OWN)
     own = NEXT.split(own, maxsplit=1)[0]
     page = path.stem if path.parent.name == "book" else f"{path.parent.name}/{path.stem}"
     pieces = TITLE.split(own)[1:]  # number, title, kind and text of each

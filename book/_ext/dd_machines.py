@@ -15,16 +15,13 @@ from pathlib import Path
 import nbformat
 import yaml
 from dd_lessons import chapters
-from dd_reader import NOTE
+from dd_reader import MARK, NOTE
 
 # What is written, below the root of the site
 CLAIMS, TEXTS, MAP = "claims.json", "text", "llms.txt"
 
 # Files of the clone that only the whole book has
 CITED, LEDGER = "CITATION.cff", "book/ledger.ipynb"
-
-# A number of the book in a reader's notebook, as `dd_reader` writes it
-NUMBER = re.compile(r"<abbr title=\"the book's number\">(.*?)</abbr>")
 
 # How `MAP` begins
 SAID = """# {title}
@@ -98,7 +95,8 @@ def plain(notebook) -> str:
     for cell in notebook.cells:
         source = cell.source.strip()
         if cell.cell_type == "markdown":
-            words = NUMBER.sub(r"\1", source).replace(".ipynb", ".md")  # links lead to texts
+            words = source.replace(MARK[0], "").replace(MARK[1], "")
+            words = words.replace(".ipynb", ".md")  # links lead to texts
             texts += [words] if source not in ("", NOTE) else []
         elif source and not cell.metadata.get("jupyter", {}).get("source_hidden"):
             texts.append(f"```python\n{source}\n```")

@@ -16,7 +16,8 @@ from docutils import nodes
 from sphinx.util.docutils import SphinxDirective
 
 FILE = "book/quizzes.yml"
-OWN = "## On your own\n"  # the heading before which the section is put
+ON_YOUR_OWN = "On your own"  # the heading before which the section is put
+OWN = f"## {ON_YOUR_OWN}\n"
 HEADING = "## Check yourself"
 
 # What is put before `OWN` when a page is read

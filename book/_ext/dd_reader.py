@@ -47,6 +47,7 @@ if importlib.util.find_spec("workshop") is None:
     if "google.colab" in sys.modules:
         sys.modules["google.colab"].output.enable_custom_widget_manager()"""
 QUOTED = re.compile(r"(?m)^quoted\(.*\)$")  # the numbers stand in the text already
+MARK = ('<abbr title="the book\'s number">', "</abbr>")  # around a number in the text
 ARCHIVE = "notebooks.zip"  # beside the first page
 FOLDED = ("remove-cell", "remove-input", "hide-input")
 CHANGE_THIS = "change-this"
@@ -187,7 +188,7 @@ class Plain:
             told = HYPHEN.sub("−", format(value, form))
         except (TypeError, ValueError):
             told = str(value)
-        return f'<abbr title="the book\'s number">{told}</abbr>'
+        return f"{MARK[0]}{told}{MARK[1]}"
 
 
 def _keys(target: str) -> list[str]:

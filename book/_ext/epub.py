@@ -12,7 +12,7 @@ from html import escape
 from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
-from xml.dom import minidom
+from xml.etree import ElementTree
 
 import pdf
 from offers import offer
@@ -27,6 +27,7 @@ CONTAINER = """<?xml version="1.0"?>
 KINDS = {".svg": "image/svg+xml", ".png": "image/png", ".jpg": "image/jpeg"}
 SOLUTIONS = "solutions"
 XHTML = "http://www.w3.org/1999/xhtml"
+XLINK = "http://www.w3.org/1999/xlink"
 NEEDLESS = ("aria-live", "aria-activedescendant", "for", "loading", "target", "rel")
 """Attributes of no use in a book, beside all that begin with ``data-``."""
 
@@ -46,53 +47,46 @@ class Page(NamedTuple):
         )
 
 
-def parsed(body: str) -> minidom.Element:
-    """What a page holds, as the elements of one; `take.js` writes XML."""
-    return minidom.parseString(f'<body xmlns="{XHTML}">{body}</body>').documentElement
+def parsed(body: str) -> ElementTree.Element:
+    """What a page holds, as the elements of one without prefixes; `take.js` writes XML."""
+    root = ElementTree.fromstring(f'<body xmlns="{XHTML}">{body}</body>')
+    for element in root.iter():
+        space, _, name = element.tag[1:].rpartition("}")
+        element.tag = "span" if name.startswith("mjx-") else name
+        if name in ("svg", "math"):
+            element.set("xmlns", space)
+        if link := element.attrib.pop(f"{{{XLINK}}}href", None):
+            element.set("xlink:href", link)  # a page's first tag says what that is
+    return root
 
 
-def elements(body: minidom.Element) -> list[minidom.Element]:
-    return body.getElementsByTagName("*")
-
-
-def places(bodies: list[tuple[str, minidom.Element]]) -> dict[str, str]:
+def places(bodies: list[tuple[str, ElementTree.Element]]) -> dict[str, str]:
     """The file in which each id stands, from the names of files and what is in them."""
-    return {
-        element.getAttribute("id"): name
-        for name, body in bodies
-        for element in elements(body)
-        if element.hasAttribute("id")
-    }
+    return {element.attrib.get("id"): name for name, body in bodies for element in body.iter()}
 
 
-def tidy(body: minidom.Element, files: dict[str, str], kept: dict[str, Path]) -> str:
+def tidy(body: ElementTree.Element, files: dict[str, str], kept: dict[str, Path]) -> str:
     """XML of a page with links into the files of the book and with pictures of its own.
 
     `files` says where an id is; `kept` gathers the pictures.
     """
-    for element in elements(body):
-        name = element.tagName
-        if name == "a" and element.getAttribute("class") == "see":  # there are no pages
-            element.parentNode.removeChild(element)
-        for attribute in list(element.attributes.keys()):
-            value = element.getAttribute(attribute)
-            if attribute.startswith("data-") or attribute in NEEDLESS:
-                element.removeAttribute(attribute)
-            elif attribute == "href" and value.startswith("#"):
-                element.removeAttribute("href")
-                if where := files.get(value[1:]):
-                    element.setAttribute("href", f"{where}.xhtml{value}")
-            elif attribute == "src" and value.startswith("file:"):
+    for element in body.iter():
+        for name, value in list(element.items()):
+            new = value
+            if name.startswith("data-") or name in NEEDLESS:
+                new = None
+            elif name == "href" and value.startswith("#"):
+                where = files.get(value[1:])
+                new = where and f"{where}.xhtml{value}"
+            elif name == "src" and value.startswith("file:"):
                 path = Path(unquote(urlsplit(value).path))
                 kept[path.name] = path
-                element.setAttribute("src", f"images/{path.name}")
-            elif (attribute, value) == ("xmlns", XHTML):  # the page says it
-                element.removeAttribute("xmlns")
-            elif attribute == "role" and name == "svg" and not value.startswith("img"):
-                element.removeAttribute("role")
-        if name.startswith("mjx-"):
-            element.tagName = element.nodeName = "span"
-    return "".join(node.toxml() for node in body.childNodes)
+                new = f"images/{path.name}"
+            elif name == "role" and element.tag == "svg" and not value.startswith("img"):
+                new = None
+            element.attrib.pop(name) if new is None else element.set(name, new)
+    inside = ElementTree.tostring(body, encoding="unicode").partition(">")[2]
+    return inside.rpartition("</body>")[0]
 
 
 def make(found: list[dict], path: Path) -> None:

@@ -22,7 +22,6 @@ sys.path.append(str(Path(__file__).parents[2] / "tests" / "support"))  # how a b
 import chromium
 from dd_public import repository, site
 from jinja2 import Environment, FileSystemLoader, Template
-from markupsafe import Markup
 from offers import offer
 from tqdm import tqdm
 
@@ -80,9 +79,9 @@ def taken(browser, built: Path, parts, progress, book: bool = False) -> list[dic
     return found
 
 
-def quoted(text: str) -> Markup:
+def quoted(text: str) -> str:
     """A text as style sheets quote one."""
-    return Markup('"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"')
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
 def template(name: str) -> Template:
@@ -177,6 +176,7 @@ def make(built: Path, folder: Path, volume: str, browser) -> Path:
         with opened(browser, draft) as page:
             at = numbers(printed(page))
             progress.update()
+        with opened(browser, draft) as page:  # anew: printed again, it would break pages elsewhere
             headings = page.evaluate((HERE / "fill.js").read_text(encoding="utf-8"), at)
             writer = PdfWriter(clone_from=io.BytesIO(printed(page)))
         titled(writer.root_object["/Outlines"].get_object().get("/First"), headings)

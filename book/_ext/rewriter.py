@@ -9,7 +9,10 @@ from operator import itemgetter
 
 
 class Rewriter(HTMLParser):
-    """Markup that is read once; its methods for tags note changes, which `changed` makes."""
+    """Markup that is read once; a subclass notes changes at its tags, which `changed` makes.
+
+    Writing a page anew from a tree would take longer, and would write all of it in another way.
+    """
 
     def __init__(self, text: str):
         super().__init__(convert_charrefs=False)
@@ -44,5 +47,5 @@ class Rewriter(HTMLParser):
 
 def tag(name: str, attributes: dict[str, str | None]) -> str:
     """A start tag."""
-    told = (f' {key}="{escape(value or "")}"' for key, value in attributes.items())
-    return f"<{name}{''.join(told)}>"
+    written = (f' {key}="{escape(value or "")}"' for key, value in attributes.items())
+    return f"<{name}{''.join(written)}>"

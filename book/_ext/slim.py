@@ -35,7 +35,6 @@ HEAD = (  # for that page: without an icon, browsers look for it
     '<link rel="icon" href="_static/favicon.svg">'
 )
 SCROLLED = "pst-scrollable-table-container"
-WIDGETS = "application/vnd.jupyter.widget-"  # types of scripts: `WIDGETS` state or view, as JSON
 CSS_DATA = re.compile(r"""url\((?:"(data:(?:[^"\\]|\\.)*)"|(data:[^)]*))\)""")
 # Rules of single icons: `.fa-sun:before{content:"\\f185"}`, 1,900 of them.
 ICON_RULES = re.compile(r"(?<=[};])(?:\.fa-[\w.-]+(?::{1,2}\w+)?,?)+\{[^{}]*\}")
@@ -121,13 +120,12 @@ class Page(Rewriter):
             drawn = self.icons.inline(own) if self.text.startswith(end, self.end) else ""
             if drawn:
                 self.change(self.start, self.end + len(end), drawn)
-        elif name == "link" and own.get("rel") == "preload":
+        elif name == "link" and (own.get("rel"), own.get("as")) == ("preload", "script"):
             self.change(self.start, self.end, "")  # fails where scripts are off
-        elif "toctree-toggle" in classes:  # of the contents: an icon without words
+        elif "toctree-toggle" in classes and self.opened["summary"]:  # an icon without words
             start, end, summary = self.opened["summary"][-1]
-            self.change(
-                start, end, tag("summary", {**summary, "aria-label": "Pages below this one"})
-            )
+            named = {**summary, "aria-label": "Pages below this one"}
+            self.change(start, end, tag("summary", named))
         elif SCROLLED in classes:
             self.change(self.start, self.end, tag("section", own))  # a div that scrolls has no role
         elif "search-button-field" in classes:  # its words say what it is
@@ -163,28 +161,30 @@ class Page(Rewriter):
             if script.name in unused:
                 self.change(script.start, script.end, "")
 
+    def of_widgets(self, kind: str) -> list[Script]:
+        """The scripts that hold widgets' "state" or "view" as JSON."""
+        kind = f"application/vnd.jupyter.widget-{kind}+json"
+        return [script for script in self.scripts if script.attributes.get("type") == kind]
+
     def separate_stills(self, store) -> None:
         """After each widget, its trait `still` as a picture for where there is no script.
 
         The picture becomes a file; what the trait held is no longer part of the page.
         """
         images = {}
-        for script in self.scripts:
-            if script.attributes.get("type") == f"{WIDGETS}state+json":
-                saved = json.loads(script.content)
-                for model, entry in saved["state"].items():
-                    if address := entry.get("state", {}).pop("still", ""):
-                        alt = entry["state"].get("still_alt", "")
-                        told = {"class": "still", "src": store(address), "alt": alt}
-                        images[model] = f"<noscript>{tag('img', told)}</noscript>"
-                told = json.dumps(saved).replace("</", "<\\/")
-                self.change(
-                    script.start, script.end, f"{tag('script', script.attributes)}{told}</script>"
-                )
-        for script in self.scripts:
-            if script.attributes.get("type") == f"{WIDGETS}view+json":
-                image = images.get(json.loads(script.content)["model_id"], "")
-                self.change(script.end, script.end, image)
+        for script in self.of_widgets("state"):
+            saved = json.loads(script.content)
+            for model, entry in saved["state"].items():
+                if address := entry.get("state", {}).pop("still", ""):
+                    alt = entry["state"].get("still_alt", "")
+                    image = tag("img", {"class": "still", "src": store(address), "alt": alt})
+                    images[model] = f"<noscript>{image}</noscript>"
+            state = json.dumps(saved).replace("</", "<\\/")
+            new = f"{tag('script', script.attributes)}{state}</script>"
+            self.change(script.start, script.end, new)
+        for script in self.of_widgets("view"):
+            model = json.loads(script.content)["model_id"]
+            self.change(script.end, script.end, images.get(model, ""))
 
 
 def keep(folder: Path, up: str, address: str) -> str:

@@ -14,6 +14,7 @@ sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import dd_cite
 import dd_exercises
 import dd_lessons
+import dd_quiz
 
 
 def asked(strong: str, *rest) -> nodes.paragraph:
@@ -24,7 +25,7 @@ def test_a_paragraph_becomes_a_heading_and_its_folds_are_named():
     """The question keeps its words; what belongs to no exercise stays as it is."""
     fold = f'<details class="answer">\n{dd_exercises.SOLUTION}\n'
     check = nodes.container(prompt_show="The check", prompt_hide="The check")
-    own = nodes.section("", nodes.title("", dd_lessons.HEADING), nodes.paragraph("", "Before."))
+    own = nodes.section("", nodes.title("", dd_quiz.ON_YOUR_OWN), nodes.paragraph("", "Before."))
     own += [asked("1. Late", " (a design). Let it."), check, nodes.raw("", fold, format="html")]
     own += [asked("2. Twice", " (an experiment). "), nodes.raw("", fold, format="html")]
     other = nodes.section("", nodes.title("", "Elsewhere"), asked("1. Late", " (a design)."))

@@ -106,9 +106,10 @@ def test_icons_become_pictures_where_the_font_has_them():
 def test_stills_leave_the_state_of_widgets_for_files():
     state = {"state": {"m": {"state": {"still": "data:x", "still_alt": 'a "<" b', "k": "</p>"}}}}
     state = json.dumps(state).replace("</", "<\\/")
+    kind = "application/vnd.jupyter.widget-"
     text = (
-        f'<script type="{slim.WIDGETS}view+json">{{"model_id": "m"}}</script><p>1</p>'
-        f'<script type="{slim.WIDGETS}state+json">{state}</script>'
+        f'<script type="{kind}view+json">{{"model_id": "m"}}</script><p>1</p>'
+        f'<script type="{kind}state+json">{state}</script>'
     )
     made = slim.slim_page(text, NoIcons(), lambda address: f"_images/{address[5:]}.svg")
     assert (

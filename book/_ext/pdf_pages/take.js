@@ -63,7 +63,7 @@
     const there = page.replaceAll("/", "-");
     const id = to.hash ? `${there}--${decodeURIComponent(to.hash.slice(1))}` : `${there}--start`;
     link.setAttribute("href", `#${id}`);
-    if (there !== key && page !== "glossary" && page !== "bibliography") {
+    if (!book && there !== key && page !== "glossary" && page !== "bibliography") {
       const at = made("a", "see", "000");
       at.href = `#${id}`;
       at.dataset.page = id;
@@ -87,7 +87,7 @@
       const at = made("a", "see", "000");
       at.href = `#${id}`;
       at.dataset.page = id;
-      line.append(at);
+      if (!book) line.append(at); // there are no pages
       el.before(line);
     }
     before = title;
