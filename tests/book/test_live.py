@@ -289,6 +289,11 @@ def test_work_is_judged_and_kept_on_the_device_alone(browser, site, tmp_path):
     saved.value.save_as(tmp_path / "work.json")
     kept = json.loads((tmp_path / "work.json").read_text(encoding="utf-8"))["pages"]
     assert kept["feedback.html"]["solved"] == [cells[answer]["id"]]
+    both = tab.locator(".live-output .two-forms")
+    assert not both.count()  # a wide page needs none of the narrow forms
+    tab.set_viewport_size({"width": 390, "height": 800})
+    both.first.wait_for(state="attached", timeout=60_000)
+    tab.set_viewport_size({"width": 1280, "height": 800})
     assert not violations(tab)
     tab.reload()
     assert "Solved: 1 of " in summary.inner_text()
