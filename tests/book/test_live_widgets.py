@@ -70,13 +70,17 @@ def test_what_is_picked_and_trained_in_the_page_python_has(browser, site):
 def test_what_follows_a_drag_leaves_it(browser, site):
     """The cells that take the picker run; neither its own cell nor one that sets it does."""
     tab = browser.new_page(viewport={"width": 1000, "height": 900})
+    tab.on("dialog", lambda dialog: dialog.accept())
     tab.goto(f"{site}/{PAGE}.html")
+    book = '<div class="cell_output"><div class="ddlib-widget" id="book">of the book</div></div>'
+    add = f"(el) => el.insertAdjacentHTML('beforeend', `{book}`)"
+    tab.locator("[data-live]").first.evaluate(add)
     tab.get_by_role("button", name="Run this page").click()
     tab.get_by_role("button", name="Stop").click()
     code = [
         PICKER,
         "at = picker.extents_deg\nprint(*at)",
-        "picker.extents_deg = 12, 34",
+        "def go_to(*at):\n    picker.extents_deg = at\n\ngo_to(12, 34)",
         "print(at)",
     ]
     for k, source in enumerate(code):
@@ -106,3 +110,6 @@ def test_what_follows_a_drag_leaves_it(browser, site):
     assert [f"{float(each):.1f}" for each in told] == dragged
     assert [told.rstrip("°") for told in extents.all_inner_texts()[:2]] == dragged
     assert shown.get_attribute("data-seen") == "before" and follows.is_disabled()
+    assert not tab.locator("#book").count()  # it made room for the reader's own
+    tab.get_by_role("button", name="Reset: code and output").click()
+    assert tab.locator("#book").count() and not shown.get_attribute("data-seen")

@@ -2,6 +2,8 @@
 
 import html
 import re
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -88,3 +90,8 @@ def test_what_would_have_changed_the_verdict(make, monkeypatch):
         monkeypatch.setattr(Claim, "judge", lambda self: self.verdict)
         text = wall.Tiles([claim])._repr_markdown_()
         assert f"*{head}:* r" in text and "c &lt; d" in text
+
+
+def test_a_page_that_runs_in_the_browser_needs_no_templates():
+    code = "import sys; sys.modules['jinja2'] = None; import beyond.chapters.verdict"
+    subprocess.run([sys.executable, "-c", code], check=True)

@@ -86,7 +86,7 @@ async def run(
         emit("twin", "")
     found = names(source, {n for n, value in space.items() if isinstance(value, types.ModuleType)})
     before = dict(space)
-    altered = found.changes.union(*(of for one in known.values() for of in one.alters.values()))
+    altered = _perhaps_altered(found)
     prints = {n: footprint(before[n]) for n in altered & before.keys()}
     loud = emit
     if quiet:
@@ -109,6 +109,17 @@ async def run(
             altered = sorted((altered & before.keys()) - same)
             more = {"prints": told, "altered": altered, "handled": _handled(made[name])}
             loud("names", json.dumps({**found.told(), **more}))
+
+
+def _perhaps_altered(found: Names) -> set[str]:
+    """What a cell may change in place, by its code or by a function of any cell.
+
+    Nobody can compare widgets: of these only what its own code or a function that it names changes.
+    """
+    altering = [(name, of) for one in (*known.values(), found) for name, of in one.alters.items()]
+    named = found.reads | found.writes
+    own = found.changes.union(*(of for name, of in altering if name in named))
+    return own.union(*(of for _, of in altering)).difference(set(_handled(space)) - own)
 
 
 def _handled(values: dict) -> list[str]:

@@ -215,7 +215,6 @@
   function open(cell, number) {
     const input = cell.el.querySelector(".cell_input");
     cell.name = `cell ${number + 1}`;
-    cell.built = [...cell.el.querySelectorAll(".cell_output .output")];
     cell.away = [];
     const caption = cell.el.querySelector(".cell_output figcaption");
     cell.told = make("div", {
@@ -439,7 +438,10 @@
   }
 
   // What the book shows makes room for what the reader's code gives: two figures may share an id.
+  const OUTPUTS = '.cell_output :is(.output, .ddlib-widget, script[type*="widget-view"])';
   function fresh(cell) {
+    const first = (el) => !el.closest(".live-output") && !el.parentElement.closest(".output, .ddlib-widget");
+    cell.built ??= [...cell.el.querySelectorAll(OUTPUTS)].filter(first);
     for (const el of cell.built) {
       const mark = new Comment();
       el.replaceWith(mark);
@@ -456,7 +458,8 @@
 
   function restore(cell) {
     for (const [mark, el] of cell.away) mark.replaceWith(el);
-    cell.built.push(...cell.away.splice(0).map(([, el]) => el));
+    cell.away = [];
+    cell.built = undefined; // what stands there
   }
 
   function asBuilt(sure = false) {

@@ -10,10 +10,10 @@ import html
 import inspect
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from ddlib.tables import significant, typeset
 from workshop.report.evidence.cards import LISTS, WORDS, worded
@@ -45,12 +45,6 @@ _AFTER = {
     "trial, change": "set after a first trial had been seen, and changed later",
 }
 
-_TEMPLATES = Environment(  # for Markdown: a template says itself what it escapes
-    loader=FileSystemLoader(Path(__file__).with_name("templates")),
-    trim_blocks=True,
-    undefined=StrictUndefined,
-)
-
 _CODE = "../_modules"  # The folder of the pages that show source, beside that of the chapters
 
 _MIDDLE = (0.025, 0.5, 0.975)  # Quantiles of the draws that a tile's picture shows
@@ -65,8 +59,16 @@ def mark(verdict: str) -> str:
 
 
 def rendered(name: str, /, **values) -> str:
-    """A template of the folder beside this module, as Markdown."""
-    return _TEMPLATES.get_template(f"{name}.md.jinja").render(mark=mark, **values)
+    """A template of the folder beside this module, as Markdown: it says itself what it escapes."""
+    return _templates().get_template(f"{name}.md.jinja").render(mark=mark, **values)
+
+
+@cache
+def _templates():
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined  # not in a reader's browser
+
+    home = FileSystemLoader(Path(__file__).with_name("templates"))
+    return Environment(loader=home, trim_blocks=True, undefined=StrictUndefined)
 
 
 @dataclass(frozen=True)
