@@ -246,6 +246,25 @@ def marked(tab) -> list[str]:
     return [said for said in tab.locator(".live-mark").all_inner_texts() if said]
 
 
+KEEP = """() => {
+  const make = URL.createObjectURL;
+  URL.createObjectURL = (content) => make.call(URL, (window.handed = content));
+}"""
+
+
+def save(tab, target):
+    """By the button. Of files that a page has made, Firefox's driver tells nothing."""
+    button = tab.get_by_role("button", name="Save as a file")
+    if chromium.FIREFOX:
+        tab.evaluate(KEEP)
+        button.click()
+        target.write_text(tab.evaluate("() => window.handed.text()"), encoding="utf-8")
+        return
+    with tab.expect_download() as saved:
+        button.click()
+    saved.value.save_as(target)
+
+
 @pytest.mark.browser
 @pytest.mark.slow
 def test_work_is_judged_and_kept_on_the_device_alone(browser, site, tmp_path):
@@ -284,9 +303,7 @@ def test_work_is_judged_and_kept_on_the_device_alone(browser, site, tmp_path):
     tab.locator(IDLE).wait_for(timeout=300_000)
     assert not marked(tab)
     summary.click()
-    with tab.expect_download() as saved:
-        tab.get_by_role("button", name="Save as a file").click()
-    saved.value.save_as(tmp_path / "work.json")
+    save(tab, tmp_path / "work.json")
     kept = json.loads((tmp_path / "work.json").read_text(encoding="utf-8"))["pages"]
     assert kept["feedback.html"]["solved"] == [cells[answer]["id"]]
     both = tab.locator(".live-output .two-forms")
@@ -321,12 +338,22 @@ BROKEN = {  # code, and what stands below the cell
 }
 
 
+LATEST = """window.Worker = class extends Worker {
+  constructor(...given) {
+    super(...given);
+    window.latest = this;
+  }
+}"""
+"""Run before a page's own scripts, which start Python in a worker."""
+
+
 @pytest.mark.browser
 @pytest.mark.slow
 def test_a_page_goes_on_after_whatever_a_cell_does(browser, site):
     tab, wrong = browser.new_page(), []
     refuse = "Object.defineProperty(window, 'localStorage', {get() { throw new Error('blocked') }})"
     tab.add_init_script(refuse)
+    tab.add_init_script(LATEST)
     tab.on("pageerror", lambda error: wrong.append(str(error)))
     tab.goto(f"{site}/book/feedback.html")
     tab.get_by_role("button", name="Run this page").click()
@@ -350,11 +377,9 @@ def test_a_page_goes_on_after_whatever_a_cell_does(browser, site):
     tab.get_by_role("button", name="Stop").click()
     tab.locator(".live-output >> text=Stopped").wait_for(timeout=60_000)
     assert run("print(6 * 7)").strip() == "42"
-    try:
-        tab.workers[-1].evaluate("self.close()")
-    except Exception:  # it cannot answer any more
-        pass
+    tab.evaluate("() => window.latest.terminate()")
     assert "Python broke off" in run("print(1)", 60_000)
     assert run("print(6 * 7)").strip() == "42"
     assert "keeps nothing for this site" in tab.locator(".live-kept").text_content()
-    assert not wrong
+    # Firefox has this to say itself, of a worker that is ended while it computes
+    assert set(wrong) <= ({"undefined"} if chromium.FIREFOX else set())
