@@ -74,7 +74,13 @@ def execute(cache, paths: list[Path], say=print) -> list[Path]:
         cache.add_nb_to_project(str(path))
     names = list(map(str, paths))
     wanted = len(cache.list_unexecuted(filter_uris=names))
-    before, started = len(cache.list_cache_records()), time.monotonic()
+
+    # Counted by files: the executor forks, and a process that is forked while this one asks the
+    # cache's database waits for ever for a lock that nobody in it holds.
+    def kept() -> int:
+        return sum(1 for _ in Path(cache.path).glob("executed/*/base.ipynb"))
+
+    before, started = kept(), time.monotonic()
     logger = logging.getLogger("notebooks")
     logger.setLevel(logging.WARNING)
     run = load_executor("local-parallel", cache, logger).run_and_cache
@@ -83,7 +89,7 @@ def execute(cache, paths: list[Path], say=print) -> list[Path]:
         left = {task}
         while left:
             _, left = wait(left, PAUSE)
-            count = len(cache.list_cache_records()) - before
+            count = kept() - before
             say(f"    {count} of {wanted} notebooks after {time.monotonic() - started:.0f} s")
     errored = task.result().errored  # also where two notebooks of the same code met in the cache
     left = cache.list_unexecuted(filter_uris=errored) if errored else []
