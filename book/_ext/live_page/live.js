@@ -70,7 +70,7 @@
   // --- the bar above the first cell ---
   cells.forEach((cell, place) => {
     cell.el = document.querySelector(`[data-live="${cell.id}"]`);
-    Object.assign(cell, { place, shown: cell.source, turn: 0, asBuilt: cell.names });
+    Object.assign(cell, { place, shown: cell.source, turn: 0, last: 0, asBuilt: cell.names });
   });
   const bar = make("section", { class: "live-bar", "aria-label": "Run this page" });
   const status = make("p", { class: "live-status", role: "status" });
@@ -618,7 +618,7 @@
     worker = new Worker(new URL("worker.mjs", home), { type: "module" });
     ready = false;
     loaded = turns = 0;
-    for (const cell of cells) cell.turn = 0;
+    for (const cell of cells) cell.turn = cell.last = 0;
     expected = megabytes[0] * 1e6;
     progress.hidden = false;
     advance(0);
@@ -726,13 +726,21 @@
     if (cell.time) cell.time.textContent = told;
   }
 
+  // A cell with all that it may read: of code that was changed and has not run yet, any word.
+  function asItStands(cell) {
+    if (cell.extra || text(cell) === cell.shown) return cell;
+    const words = text(cell).match(/[\p{L}_][\p{L}\p{N}_]*/gu) ?? [];
+    const reads = [...new Set([...(cell.names.reads ?? []), ...words])];
+    return { ...cell, names: { ...cell.names, reads } };
+  }
+
   // The next cell, after the cells above that have to run before it: what it needs of them is not
   // in this worker yet, or was changed in place since.
   function prepared() {
     for (let tries = 0; tries < 1000; tries++) {
       const cell = [...waiting].sort((a, b) => a.place - b.place)[0];
       if (!cell) return undefined;
-      const those = cell.extra ? cells.with(cell.place, cell) : cells;
+      const those = cells.with(cell.place, asItStands(cell));
       const graph = follow.graph(those);
       const lists = [...graph[cell.place].from.values()].flat();
       // of code that was changed and has not run yet, nobody knows what it needs
@@ -748,7 +756,7 @@
   }
 
   function spoiled(graph, place) {
-    const found = follow.spoiled(graph, place, cells.map((c) => c.turn));
+    const found = follow.spoiled(graph, place, cells.map((c) => c.last));
     if (!found) return undefined;
     const { maker, name } = found;
     cells[maker].turn = 0;
@@ -795,6 +803,7 @@
     if (cell.cancelled && !ok) {
       cell.stale = true;
       cell.turn = 0;
+      cell.last = ++turns; // half of it ran, and may have changed what is above
       if (spread && !cell.extra) waiting.add(cell);
     } else if (!cell.extra) settled(cell);
     if (cell.failed) drop();
@@ -819,7 +828,7 @@
   // What a cell gave to names, against what it gave before: cells below take what differs.
   function settled(cell) {
     const before = cell.shown;
-    cell.turn = ++turns;
+    cell.turn = cell.last = ++turns;
     cell.shown = cell.sent;
     cell.stale = false;
     if (cell.kind === "check" && cell.said.startsWith("Right")) {
@@ -830,8 +839,12 @@
     const { prints, altered, ...names } = cell.news ?? {};
     if (!prints) return; // no Python: nothing ran
     const old = cell.prints ?? (before === cell.sent ? prints : {});
-    const given = new Set([...Object.keys(old), ...Object.keys(prints), ...altered]);
+    const { writes = [], perhaps = [], changes = [] } = cell.names;
+    const gave = cell.prints ? Object.keys(old) : [...Object.keys(old), ...writes, ...perhaps];
+    const once = [...gave, ...(cell.altered ?? changes)];
+    const given = new Set([...once, ...Object.keys(prints), ...altered]);
     const fine = (name) => cell.prints === undefined && before === cell.sent;
+    const earlier = follow.graph(cells); // with names that the cell gives or changes no more
     cell.names = names;
     cell.altered = altered;
     cell.prints = prints;
@@ -848,7 +861,8 @@
     );
     if (!cell.quiet) for (const name of remade) differs.add(name);
     else for (const name of [...differs]) if (!prints[name]) differs.delete(name);
-    for (const k of follow.readers(cells, graph, cell.place, differs)) {
+    const readers = [earlier, graph].flatMap((g) => follow.readers(cells, g, cell.place, differs));
+    for (const k of new Set(readers)) {
       const one = cells[k];
       if (one.asked && waiting.has(one)) continue;
       if (one.kind === "answer" || one.needs) continue;
