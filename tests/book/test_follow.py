@@ -8,6 +8,7 @@ import sys
 import types
 from contextlib import chdir, redirect_stdout
 
+import live_pages
 import matplotlib
 import pytest
 from book_pages import ROOT, WALK
@@ -408,15 +409,6 @@ def test_a_training_shows_its_progress_and_can_be_stopped(run, monkeypatch):
 
 # --- the page ---
 
-BESIDE = """window.Worker = class {
-  async postMessage(message) {
-    const all = message.start ? [{ ready: true }] : await window.runs(message);
-    for (const data of all) this.onmessage({ data });
-  }
-  terminate() {}
-}"""
-"""In place of the worker with Pyodide: the kernel in the Python of the test."""
-
 
 @pytest.fixture
 def reader(browser, run):
@@ -430,29 +422,13 @@ def reader(browser, run):
         return [*({"run": message["run"], "kind": k, "text": t} for k, t in said), ended]
 
     tab.expose_function("runs", runs)
-    tab.add_init_script(BESIDE)
+    tab.add_init_script(live_pages.BESIDE)
 
     def one(cells, *changes):
         island = [
-            {"id": f"c{k}", "kind": "open", "source": source, "needs": "", **told(source)[0]}
-            for k, source in enumerate(cells)
+            {"id": f"c{k}", "source": source, **told(source)[0]} for k, source in enumerate(cells)
         ]
-        data = json.dumps({"cells": island, "data": [], "megabytes": [1, 1], "notebook": ""})
-        field = '<div class="cell" data-live="{id}"><div class="cell_input"></div></div>'
-        shown = "".join(field.format(**cell) for cell in island)
-        scripts = "".join(f'<script src="{name}.js"></script>' for name in ("follow", "live"))
-        text = f"<main><section>{shown}</section></main>"
-        text += f'<script type="application/json" id="live-page">{data}</script>{scripts}'
-
-        def answer(route):
-            name = route.request.url.rpartition("/")[2]
-            found = live.PAGE / name
-            if name.endswith(".js"):
-                return route.fulfill(body=found.read_text("utf-8"), content_type="text/javascript")
-            return route.fulfill(body=text, content_type="text/html")
-
-        tab.route("http://page.test/**", answer)
-        tab.goto("http://page.test/a.html")
+        tab.goto(live_pages.set_up(tab, island))
         tab.get_by_role("button", name="Run this page").click()
         tab.locator("html[data-live=idle]").wait_for()
         for k, source in changes:

@@ -7,6 +7,7 @@
   const home = new URL(".", document.currentScript.src);
   const KEYS = "live:"; // one a page
   const MINE = KEYS + location.pathname;
+  const FOLDER = MINE.slice(0, MINE.lastIndexOf("/") + 1); // the book's: a server may have others
   const REACT = "live-react";
   const FORMAT = "direct-drive-work-1";
 
@@ -41,12 +42,15 @@
     try {
       if (value === null) localStorage.removeItem(key);
       else localStorage.setItem(key, JSON.stringify(value));
+      return true;
     } catch {
       blocked = true;
+      return false;
     }
   };
+  const isPair = (c) => Array.isArray(c) && c.length === 2 && c.every((t) => typeof t === "string");
   const work = (found) => ({
-    changes: { ...(found?.changes ?? {}) },
+    changes: Object.fromEntries(Object.entries(found?.changes ?? {}).filter(([, c]) => isPair(c))),
     solved: Array.isArray(found?.solved) ? found.solved : [],
   });
   let mine = work(read(MINE));
@@ -56,15 +60,24 @@
     blocked = true;
   }
 
+  // Another tab may have written since: only what was changed in this one is written over it. What
+  // was changed of cells that the book has no more, or with other code, stays.
   function remember() {
-    if (cells.some((c) => c.area)) {
-      const changed = cells.filter((c) => c.area && c.area.value !== c.source);
-      mine.changes = Object.fromEntries(changed.map((c) => [c.id, [c.source, c.area.value]]));
+    const there = work(read(MINE) ?? (blocked ? mine : undefined));
+    const touched = cells.filter((c) => c.area && c.area.value !== c.written);
+    for (const { id, source, area } of touched) {
+      const before = there.changes[id];
+      if (before && before[0] !== source) there.changes[`${id}, earlier`] = before;
+      if (area.value !== source) there.changes[id] = [source, area.value];
+      else delete there.changes[id];
     }
+    there.solved = [...new Set([...there.solved, ...mine.solved])];
+    mine = there;
     const some = Object.keys(mine.changes).length;
-    write(MINE, some || mine.solved.length ? mine : null);
+    if (write(MINE, some || mine.solved.length ? mine : null))
+      for (const cell of touched) cell.written = cell.area.value;
     tally();
-    return some;
+    return cells.some((c) => c.area && c.area.value !== c.source);
   }
 
   // --- the bar above the first cell ---
@@ -131,15 +144,16 @@
     const found = {};
     try {
       for (const key of Object.keys(localStorage))
-        if (key.startsWith(KEYS)) found[key.split("/").at(-1)] = work(read(key));
+        if (key.startsWith(FOLDER)) found[key.slice(FOLDER.length)] = work(read(key));
     } catch {
       blocked = true;
     }
-    if (Object.keys(mine.changes).length || mine.solved.length) found[MINE.split("/").at(-1)] = mine;
+    if (Object.keys(mine.changes).length || mine.solved.length) found[MINE.slice(FOLDER.length)] = mine;
     return found;
   }
 
   function takeOut() {
+    remember();
     const content = JSON.stringify({ format: FORMAT, pages: pages() }, null, 1);
     const address = URL.createObjectURL(new Blob([content], { type: "application/json" }));
     make("a", { href: address, download: "direct-drive-work.json" }).click();
@@ -155,25 +169,40 @@
     } catch {
       found = undefined;
     }
-    if (found?.format !== FORMAT || typeof found.pages !== "object") {
+    if (found?.format !== FORMAT || !found.pages || typeof found.pages !== "object") {
       heardOf.textContent = "This file holds no work from this book. Nothing was changed.";
       return;
     }
-    const [here] = MINE.split("/").slice(-1);
-    for (const [page, one] of Object.entries(found.pages)) {
-      if (page === here) mine = work(one);
-      write(MINE.slice(0, -here.length) + page, work(one));
+    remember();
+    const here = MINE.slice(FOLDER.length);
+    const both = Object.entries(found.pages).map(([page, one]) => ({
+      page,
+      own: page === here ? mine : work(read(FOLDER + page)),
+      other: work(one),
+    }));
+    const differ = both.flatMap(({ own, other }) =>
+      Object.keys(other.changes).filter((id) => own.changes[id] && own.changes[id][1] !== other.changes[id][1]),
+    ); // prettier-ignore
+    const ask = `The file has other code for ${many(differ.length, "cell")} that you changed here. Take it in place of yours?`;
+    const over = !differ.length || confirm(ask);
+    for (const { page, own, other } of both) {
+      const [first, last] = over ? [own, other] : [other, own];
+      const changes = { ...first.changes, ...last.changes };
+      const all = { changes, solved: [...new Set([...own.solved, ...other.solved])] };
+      if (page === here) mine = all;
+      write(FOLDER + page, all);
     }
     for (const cell of cells) if (cell.area) setText(cell, keptText(cell));
     remember();
     mark();
-    heardOf.textContent = `Your work on ${many(Object.keys(found.pages).length, "page")} is here again.`;
+    const again = `Your work on ${many(both.length, "page")} is here again.`;
+    heardOf.textContent = blocked ? `Your work on this page is here again. ${keptNothing}` : again;
   }
 
   function erase() {
     if (!confirm("Erase your changes and what you solved, on all pages of this book?")) return;
     try {
-      for (const key of Object.keys(localStorage)) if (key.startsWith(KEYS)) write(key, null);
+      for (const key of Object.keys(localStorage)) if (key.startsWith(FOLDER)) write(key, null);
     } catch {
       blocked = true;
     }
@@ -195,7 +224,14 @@
   bar.append(begin, status, progress);
   if (asked.length) bar.append(own);
   tally();
+  const other = Object.keys(mine.changes).filter(
+    (id) => mine.changes[id][0] !== cells.find((c) => c.id === id)?.source,
+  ).length;
   if (blocked) heardOf.textContent = keptNothing;
+  else if (other)
+    heardOf.textContent =
+      `The book has changed the code of ${many(other, "cell")} since you did. Your code is not ` +
+      "shown here; “Save as a file” has it.";
   // Beside the sections of the page, not in one: so it stays in view down to the last cell.
   let spot = cells[0].el;
   while (spot.parentElement.parentElement.closest("section")) spot = spot.parentElement;
@@ -265,7 +301,7 @@
       "aria-label": `Code of ${cell.name}`,
       "aria-describedby": "live-keys",
     });
-    cell.area.value = keptText(cell);
+    cell.area.value = cell.written = keptText(cell);
     // Tab indents once something was typed here; it leaves a cell that is passed through, and
     // after Escape: nobody is trapped.
     let indents = false;
