@@ -438,6 +438,7 @@ def reader(browser, run):
         assert not any(tab.locator(".live-mark").all_inner_texts())
         return [each.inner_text().strip() for each in tab.locator(".live-output").all()]
 
+    one.tab = tab
     yield one
     tab.close()
 
@@ -455,9 +456,11 @@ def reader(browser, run):
         (["a = [1]", "b = a", "b.append(3)", "print(a, b)"], [(2, "b.append(4)")]),
         (["a = [1]", "b = 2", "a.append(3)", "print(a)"], [(1, "b = 2\nprint(a)")]),
         (["a = [1]", "a = a", "a.append(3)", "print(a)"], [(2, "a.append(4)")]),
+        (["a = [1]", "b = 2", "a.append(3)", "c = 4"],
+         [(1, "print(a)\n1 / 0"), (1, "b = 2"), (3, "print(a)")]),
         (["a = map(str, [1, 2])", "print(list(a))"], [(1, "print(list(a), 1)")]),
     ],
-)
+)  # fmt: skip
 def test_what_follows_gives_what_running_all_gives(reader, cells, changes):
     anew = list(cells)
     for k, source in changes:
@@ -484,3 +487,16 @@ def test_a_page_knows_graph_handles_and_solutions(page):
         lesson(page), page, [1, 2],
     )  # fmt: skip
     assert text.index("follow.js") < text.index("live.js")
+
+
+@pytest.mark.browser
+def test_all_that_follows_stays_marked_until_it_ran(reader):
+    reader(["a = 1", "b = a", "print(b)"])
+    reader.tab.get_by_role("textbox").first.fill("a = 2")
+    said = reader.tab.locator(".live-mark")
+    behind = "May show what came before your change."
+    assert said.all_inner_texts() == ["Changed, and not run since.", behind, behind]
+    for k, left in enumerate([["", behind, behind], ["", "", behind], [""] * 3], 1):
+        reader.tab.get_by_role("button", name=f"Run: cell {k}", exact=True).click()
+        reader.tab.locator("html[data-live=idle]").wait_for()
+        assert said.all_inner_texts() == left

@@ -418,7 +418,8 @@
     const only = new Map();
     for (const cell of different)
       if (cell.handles) only.set(cell.place, follow.renamed(cell.shown, text(cell)));
-    const later = follow.after(cells, follow.graph(cells), different.map((c) => c.place), only);
+    const first = cells.filter((c) => different.includes(c) || (c.stale && !c.needs));
+    const later = follow.after(cells, follow.graph(cells), first.map((c) => c.place), only);
     let count = 0;
     for (const cell of cells) {
       if (!cell.mark) continue;
@@ -798,8 +799,9 @@
     cells[maker].turn = 0;
     const others = cells.filter((_, k) => {
       const { changes, from } = graph[k];
-      return k > maker && changes.has(name) && from.get(name)?.at(-1) === maker && cells[k].turn;
+      return k > maker && changes.has(name) && from.get(name)?.at(-1) === maker && cells[k].last;
     });
+    for (const cell of others) cell.turn = 0; // whoever needs them has them run, after an error too
     return [cells[maker], ...others];
   }
 
@@ -888,9 +890,11 @@
     const remade = new Set();
     for (const [k, { from, changes }] of graph.entries())
       for (const name of changes)
-        if (k > cell.place && from.get(name)?.includes(cell.place) && cells[k].turn) {
+        if (k > cell.place && from.get(name)?.includes(cell.place) && cells[k].last) {
           remade.add(name);
-          if (spread || cell.quiet) waiting.add(cells[k]);
+          if (!spread && !cell.quiet) continue;
+          waiting.add(cells[k]);
+          cells[k].turn = 0;
         }
     const differs = new Set(
       [...given].filter((name) => !fine(name) && (!prints[name] || prints[name] !== old[name])),
