@@ -8,6 +8,7 @@ import sys
 import types
 from contextlib import chdir, redirect_stdout
 
+import live_pages
 import matplotlib
 import pytest
 from book_pages import ROOT, WALK
@@ -59,6 +60,7 @@ def told(*sources):
         ("def f(x):\n    return x * k", {"reads": ["k"], "writes": ["f"], "carries": {"f": ["k"]}}),
         ("def f():\n    a.append(1)", {"reads": ["a"], "alters": {"f": ["a"]}}),
         ("law = lambda q: k * q", {"reads": ["k"], "carries": {"law": ["k"]}}),
+        ("[x := x + k for k in b]", {"reads": ["b", "x"], "writes": ["x"]}),
         ("x = [k * a for k in b]", {"reads": ["a", "b"], "writes": ["x"]}),
         ("del a", {"perhaps": ["a"]}),
         ("import a.b as c, d.e", {"writes": ["c", "d"], "imports": ["c", "d"]}),
@@ -103,6 +105,8 @@ def test_an_object_changed_in_place_is_made_again_first(script):
     assert script.evaluate(SPOILED, [cells, 1, [5, 2, 3, 4]]) is None
     assert script.evaluate(SPOILED, [cells, 2, [1, 2, 3, 4]]) is None  # changed above, as it should
     assert script.evaluate(SPOILED, [cells, 3, [1, 2, 3, 4]]) is None
+    cells = told("a = [1]", "a = [a, 2]", "a[0].append(3)")  # under the name of what holds it
+    assert script.evaluate(SPOILED, [cells, 1, [1, 2, 3]]) == {"maker": 0, "name": "a"}
 
 
 @pytest.mark.browser
@@ -239,7 +243,7 @@ def test_handles_of_a_lesson(page):
 @pytest.fixture
 def run(monkeypatch):
     """Run a cell below others: what is shown, and what is told of names."""
-    for name in ("space", "made", "known", "drawn"):
+    for name in ("space", "made", "known", "drawn", "seen"):
         monkeypatch.setattr(kernel, name, {})
 
     async def nothing(package):
@@ -349,6 +353,31 @@ def test_what_was_changed_in_place_is_told(run):
     assert run("a.append(2)\nadd()", "two", ["one"])[1]["altered"] == ["a", "b"]
 
 
+@pytest.mark.parametrize(
+    ("one", "two", "altered"),
+    [
+        ("a = [1]\nb = a", "b.append(2)", ["a", "b"]),  # two names of one object
+        ("a = [1]\nb = {'x': a}", "a.append(2)", ["a", "b"]),  # a part
+        ("a = [1]\ndef f(x):\n    x.append(2)\n    return x", "b = f(a)", ["a"]),
+        ("a = iter([1, 2])", "b = next(a)", ["a"]),
+        ("a = (k for k in [1, 2])", "print(list(a))", ["a"]),
+        ("def a(k, at=[]):\n    at.append(k)\n    return at", "b = a(1)", ["a"]),
+        ("def a():\n    a.n += 1\na.n = 0", "a()", ["a"]),
+        ("class A:\n    n = 0\n    def f(self):\n        self.n += 1\na = A()", "b = a.f()", ["a"]),
+        ("class A:\n    n = 0\n    def on(self):\n        pass\na = A()", "b = a.on()", []),
+        ("a = [1]\nb = a", "c = a + b", []),
+    ],
+)  # fmt: skip
+def test_a_change_that_the_code_does_not_show_is_told(run, one, two, altered):
+    run(one, "one")
+    assert run(two, "two", ["one"])[1]["altered"] == altered
+
+
+def test_a_name_that_the_code_does_not_show_is_told(run):
+    run("def f():\n    global a\n    a = 1", "one")
+    assert run("f()\nexec('b = 2')", "two", ["one"])[1]["perhaps"] == ["a", "b"]
+
+
 def test_a_syntax_error_has_its_line_in_words(run):
     shown, about = run("a = 1\nb = (2", "one")
     assert [kind for kind, _ in shown] == ["error", "syntax"] and about is None
@@ -381,6 +410,69 @@ def test_a_training_shows_its_progress_and_can_be_stopped(run, monkeypatch):
 # --- the page ---
 
 
+@pytest.fixture
+def reader(browser, run):
+    """Opens a page of such cells and changes some, one after the other: what each prints then."""
+    tab = browser.new_page()
+
+    def runs(message):
+        shown, about = run(message["source"], message["run"], message["above"], **message["how"])
+        said = [*shown, *([("names", json.dumps(about))] if about else [])]
+        ended = {"run": message["run"], "done": True, "ok": True, "seconds": 0}
+        return [*({"run": message["run"], "kind": k, "text": t} for k, t in said), ended]
+
+    tab.expose_function("runs", runs)
+    tab.add_init_script(live_pages.BESIDE)
+
+    def one(cells, *changes):
+        island = [
+            {"id": f"c{k}", "source": source, **told(source)[0]} for k, source in enumerate(cells)
+        ]
+        tab.goto(live_pages.set_up(tab, island))
+        tab.get_by_role("button", name="Run this page").click()
+        tab.locator("html[data-live=idle]").wait_for()
+        for k, source in changes:
+            tab.get_by_role("textbox").nth(k).fill(source)
+            tab.get_by_role("button", name="Run what follows").click()
+            tab.locator("html[data-live=idle]").wait_for()
+        assert not any(tab.locator(".live-mark").all_inner_texts())
+        return [each.inner_text().strip() for each in tab.locator(".live-output").all()]
+
+    one.tab = tab
+    yield one
+    tab.close()
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize(
+    ("cells", "changes"),
+    [
+        (["a = 1", "a = 2", "print(a)"], [(1, "# a = 2")]),
+        (["a = [1]", "a.append(2)", "print(a)"], [(1, "# a.append(2)")]),
+        (["i = 2", "a = [1]", "if i > 1:\n    a.append(2)", "print(a)"], [(0, "i = 0")]),
+        (["def f():\n    return 1", "def f():\n    return 2", "print(f())"], [(1, "")]),
+        (["a = 1", "b = 2", "print(a)"], [(1, "a = 3"), (1, "b = 2")]),
+        (["a = [1]", "a += [2]", "a += [3]", "print(a)"], [(2, "a += [4]")]),
+        (["a = [1]", "b = a", "b.append(3)", "print(a, b)"], [(2, "b.append(4)")]),
+        (["a = [1]", "b = 2", "a.append(3)", "print(a)"], [(1, "b = 2\nprint(a)")]),
+        (["a = [1]", "a = a", "a.append(3)", "print(a)"], [(2, "a.append(4)")]),
+        (["a = [1]", "b = 2", "a.append(3)", "c = 4"],
+         [(1, "print(a)\n1 / 0"), (1, "b = 2"), (3, "print(a)")]),
+        (["a = map(str, [1, 2])", "print(list(a))"], [(1, "print(list(a), 1)")]),
+    ],
+)  # fmt: skip
+def test_what_follows_gives_what_running_all_gives(reader, cells, changes):
+    anew = list(cells)
+    for k, source in changes:
+        anew[k] = source
+    wanted, space = [], {}
+    for source in anew:
+        with redirect_stdout(io.StringIO()) as printed:
+            exec(source, space)
+        wanted.append(printed.getvalue().strip())
+    assert reader(cells, *changes) == wanted
+
+
 @pytest.mark.parametrize("page", WALK)
 def test_a_page_knows_graph_handles_and_solutions(page):
     found = live.live_cells(lesson(page))
@@ -395,3 +487,16 @@ def test_a_page_knows_graph_handles_and_solutions(page):
         lesson(page), page, [1, 2],
     )  # fmt: skip
     assert text.index("follow.js") < text.index("live.js")
+
+
+@pytest.mark.browser
+def test_all_that_follows_stays_marked_until_it_ran(reader):
+    reader(["a = 1", "b = a", "print(b)"])
+    reader.tab.get_by_role("textbox").first.fill("a = 2")
+    said = reader.tab.locator(".live-mark")
+    behind = "May show what came before your change."
+    assert said.all_inner_texts() == ["Changed, and not run since.", behind, behind]
+    for k, left in enumerate([["", behind, behind], ["", "", behind], [""] * 3], 1):
+        reader.tab.get_by_role("button", name=f"Run: cell {k}", exact=True).click()
+        reader.tab.locator("html[data-live=idle]").wait_for()
+        assert said.all_inner_texts() == left

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import json
 import os
 import sys
 from collections.abc import Iterable, Iterator
@@ -39,6 +40,38 @@ def runs_through(tab, site: str, page: str) -> None:
     assert all(times := tab.locator(".live-time").all_inner_texts())
     assert len(times) == len(live.live_cells(lesson(page)))
     assert not tab.locator(".live-error, .live-warning, .live-note:has(a)").all_inner_texts()
+
+
+BESIDE = """window.Worker = class {
+  async postMessage(message) {
+    const all = message.start ? [{ ready: true }] : await window.runs(message);
+    for (const data of all) this.onmessage({ data });
+  }
+  terminate() {}
+}"""
+"""In place of the worker with Pyodide: what the test makes of a message."""
+
+
+def set_up(tab, cells: Iterable[dict], name: str = "a.html") -> str:
+    """Have a tab find a page with such cells and nothing else; its address."""
+    cells = [{"kind": "open", "needs": "", "names": {}, **cell} for cell in cells]
+    data = json.dumps({"cells": cells, "data": [], "megabytes": [1, 1], "notebook": ""})
+    field = '<div class="cell" data-live="{id}"><div class="cell_input"></div></div>'
+    shown = "".join(field.format(**cell) for cell in cells)
+    scripts = "".join(f'<script src="{script}.js"></script>' for script in ("follow", "live"))
+    text = f"<main><section>{shown}</section></main>"
+    text += f'<script type="application/json" id="live-page">{data}</script>{scripts}'
+
+    def answer(route):
+        path = live.PAGE / route.request.url.rpartition("/")[2]
+        if path.suffix == ".js":
+            code = path.read_text("utf-8")
+            return route.fulfill(body=code, content_type="text/javascript; charset=utf-8")
+        return route.fulfill(body=text, content_type="text/html; charset=utf-8")
+
+    tab.unroute("http://page.test/**")
+    tab.route("http://page.test/**", answer)
+    return f"http://page.test/book/{name}"
 
 
 @contextmanager

@@ -41,7 +41,7 @@ globalThis.follow = (() => {
     cells.forEach(({ names, altered }, place) => {
       const { from, changes } = found[place];
       for (const name of altered ?? names.changes ?? []) changes.add(name);
-      const todo = [...(names.reads ?? [])];
+      const todo = [...(names.reads ?? []), ...(altered ?? [])];
       for (let name; (name = todo.pop()) !== undefined; ) {
         if (from.has(name)) continue;
         const list = above(place, name);
@@ -88,10 +88,15 @@ globalThis.follow = (() => {
     for (const [name, list] of found[place].from) {
       const maker = list.at(-1);
       if (maker === undefined || !turn[maker] || found[maker].handled.has(name)) continue;
-      for (let k = place; k < found.length; k++) {
-        const same = found[k].changes.has(name) && found[k].from.get(name)?.at(-1) === maker;
-        if (same && turn[k] > turn[maker]) return { maker, name };
-      }
+      // a name that was made from itself may be the same object, or have it as a part
+      const same = (k) => {
+        let of = k;
+        do of = found[of].from.get(name)?.at(-1) ?? -1;
+        while (of > maker);
+        return of === maker;
+      };
+      for (let k = place; k < found.length; k++)
+        if (found[k].changes.has(name) && turn[k] > turn[maker] && same(k)) return { maker, name };
     }
     return undefined;
   }

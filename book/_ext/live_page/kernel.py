@@ -26,10 +26,13 @@ from names import Names, names
 os.environ["MPLBACKEND"] = "Agg"
 
 BARE = {"__name__": "__main__"}
+# of a class: what Python keeps beside its content
+WITHOUT_CONTENT = {"__dict__", "__weakref__", "__doc__", "__module__", "__slotnames__"}
 GONE = object()  # a name that a cell deleted
 space = dict(BARE)
 made: dict[str, dict] = {}  # what each cell gave to names when it ran last
 known: dict[str, Names] = {}
+seen: dict[int, tuple] = {}  # by its id, a value that a cell gave, and its footprint since
 blocked: set[str] = set()  # names that a cell would have made which cannot run here
 emitting = None  # what shows something below the cell that runs
 drawn: dict[str, tuple] = {}  # cells above, and figures shown without their narrow forms
@@ -87,7 +90,7 @@ async def run(
     found = names(source, {n for n, value in space.items() if isinstance(value, types.ModuleType)})
     before = dict(space)
     altered = _perhaps_altered(found)
-    prints = {n: footprint(before[n]) for n in altered & before.keys()}
+    prints = {n: _print_now(before[n]) for n in (altered | _reached(found)) & before.keys()}
     loud = emit
     if quiet:
         emit = _only_problems(emit)
@@ -103,10 +106,12 @@ async def run(
         if keep:
             here = {n: v for n, v in space.items() if n in found.writes or before.get(n) is not v}
             made[name] = here | dict.fromkeys(before.keys() - space.keys(), GONE)
+            # what nobody sees in its code: by a function's `global`, by `exec`
+            found.perhaps.update(n for n in here.keys() - found.writes if not n.startswith("__"))
             known[name] = found
             told = {n: footprint(value) for n, value in made[name].items() if value is not GONE}
-            same = {n for n, seen in prints.items() if seen and seen == footprint(before[n])}
-            altered = sorted((altered & before.keys()) - same)
+            altered = sorted(_altered(before, prints, altered))
+            _keep_prints(before, made[name], told, prints)
             more = {"prints": told, "altered": altered, "handled": _handled(made[name])}
             loud("names", json.dumps({**found.told(), **more}))
 
@@ -120,6 +125,53 @@ def _perhaps_altered(found: Names) -> set[str]:
     named = found.reads | found.writes
     own = found.changes.union(*(of for name, of in altering if name in named))
     return own.union(*(of for _, of in altering)).difference(set(_handled(space)) - own)
+
+
+def _reached(found: Names) -> set[str]:
+    """What a cell can come to: what it reads, and what functions of any cell read for it."""
+    reached, new = set(), found.reads - set(_handled(space))
+    while new:
+        reached |= new
+        carried = [one.carries.get(n, ()) for one in known.values() for n in new]
+        new = set().union(*carried) - reached
+    return reached - set(_handled(space))
+
+
+def _print_now(value) -> str | None:
+    """Its footprint, from when a cell last had to do with it."""
+    return seen[id(value)][1] if id(value) in seen else footprint(value)
+
+
+def _altered(before: dict, prints: dict, perhaps: set[str]) -> set[str]:
+    """Names whose values are others than before a cell; `prints` get what these are now.
+
+    What nobody can compare is taken to be changed if it goes on with each use, or if the code of
+    the cell may change it: `perhaps`. If anything was, a part of it may have more names.
+    """
+    found = set()
+
+    def compare(name, was, value):
+        prints[name] = footprint(value)
+        if prints[name] is None or was is None:
+            return name in perhaps or hasattr(type(value), "__next__")
+        return prints[name] != was
+
+    for name, was in list(prints.items()):
+        if compare(name, was, before[name]):
+            found.add(name)
+    if found:
+        others = [(n, v) for n, v in before.items() if n not in prints and id(v) in seen]
+        found.update(n for n, v in others if compare(n, seen[id(v)][1], v))
+    return found
+
+
+def _keep_prints(before: dict, given: dict, told: dict, prints: dict) -> None:
+    """Remember the footprints of values that are still to be had."""
+    for values, known_prints in ((before, prints), (given, told)):
+        seen.update((id(values[n]), (values[n], of)) for n, of in known_prints.items())
+    alive = {id(value) for one in made.values() for value in one.values()}
+    for gone in seen.keys() - alive:
+        del seen[gone]
 
 
 def _handled(values: dict) -> list[str]:
@@ -157,7 +209,11 @@ class _Printer(pickle.Pickler):
         if own or (isinstance(value, types.FunctionType) and "<locals>" in value.__qualname__):
             inside = [cell.cell_contents for cell in value.__closure__ or ()]
             code = marshal.dumps(value.__code__, 2)
-            return tuple, ([code, value.__defaults__, value.__kwdefaults__, inside],)
+            more = [value.__defaults__, value.__kwdefaults__, inside, value.__dict__]
+            return tuple, ([code, *more],)
+        if isinstance(value, type) and value.__module__ == BARE["__name__"]:
+            parts = {n: v for n, v in vars(value).items() if n not in WITHOUT_CONTENT}
+            return tuple, ([value.__qualname__, value.__bases__, parts],)
         if isinstance(value, types.ModuleType):
             return str, (value.__name__,)
         return NotImplemented

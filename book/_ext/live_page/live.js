@@ -7,6 +7,7 @@
   const home = new URL(".", document.currentScript.src);
   const KEYS = "live:"; // one a page
   const MINE = KEYS + location.pathname;
+  const FOLDER = MINE.slice(0, MINE.lastIndexOf("/") + 1); // the book's: a server may have others
   const REACT = "live-react";
   const FORMAT = "direct-drive-work-1";
 
@@ -41,12 +42,15 @@
     try {
       if (value === null) localStorage.removeItem(key);
       else localStorage.setItem(key, JSON.stringify(value));
+      return true;
     } catch {
       blocked = true;
+      return false;
     }
   };
+  const isPair = (c) => Array.isArray(c) && c.length === 2 && c.every((t) => typeof t === "string");
   const work = (found) => ({
-    changes: { ...(found?.changes ?? {}) },
+    changes: Object.fromEntries(Object.entries(found?.changes ?? {}).filter(([, c]) => isPair(c))),
     solved: Array.isArray(found?.solved) ? found.solved : [],
   });
   let mine = work(read(MINE));
@@ -56,21 +60,30 @@
     blocked = true;
   }
 
+  // Another tab may have written since: only what was changed in this one is written over it. What
+  // was changed of cells that the book has no more, or with other code, stays.
   function remember() {
-    if (cells.some((c) => c.area)) {
-      const changed = cells.filter((c) => c.area && c.area.value !== c.source);
-      mine.changes = Object.fromEntries(changed.map((c) => [c.id, [c.source, c.area.value]]));
+    const there = work(read(MINE) ?? (blocked ? mine : undefined));
+    const touched = cells.filter((c) => c.area && c.area.value !== c.written);
+    for (const { id, source, area } of touched) {
+      const before = there.changes[id];
+      if (before && before[0] !== source) there.changes[`${id}, earlier`] = before;
+      if (area.value !== source) there.changes[id] = [source, area.value];
+      else delete there.changes[id];
     }
+    there.solved = [...new Set([...there.solved, ...mine.solved])];
+    mine = there;
     const some = Object.keys(mine.changes).length;
-    write(MINE, some || mine.solved.length ? mine : null);
+    if (write(MINE, some || mine.solved.length ? mine : null))
+      for (const cell of touched) cell.written = cell.area.value;
     tally();
-    return some;
+    return cells.some((c) => c.area && c.area.value !== c.source);
   }
 
   // --- the bar above the first cell ---
   cells.forEach((cell, place) => {
     cell.el = document.querySelector(`[data-live="${cell.id}"]`);
-    Object.assign(cell, { place, shown: cell.source, turn: 0, asBuilt: cell.names });
+    Object.assign(cell, { place, shown: cell.source, turn: 0, last: 0, asBuilt: cell.names });
   });
   const bar = make("section", { class: "live-bar", "aria-label": "Run this page" });
   const status = make("p", { class: "live-status", role: "status" });
@@ -131,15 +144,16 @@
     const found = {};
     try {
       for (const key of Object.keys(localStorage))
-        if (key.startsWith(KEYS)) found[key.split("/").at(-1)] = work(read(key));
+        if (key.startsWith(FOLDER)) found[key.slice(FOLDER.length)] = work(read(key));
     } catch {
       blocked = true;
     }
-    if (Object.keys(mine.changes).length || mine.solved.length) found[MINE.split("/").at(-1)] = mine;
+    if (Object.keys(mine.changes).length || mine.solved.length) found[MINE.slice(FOLDER.length)] = mine;
     return found;
   }
 
   function takeOut() {
+    remember();
     const content = JSON.stringify({ format: FORMAT, pages: pages() }, null, 1);
     const address = URL.createObjectURL(new Blob([content], { type: "application/json" }));
     make("a", { href: address, download: "direct-drive-work.json" }).click();
@@ -155,25 +169,40 @@
     } catch {
       found = undefined;
     }
-    if (found?.format !== FORMAT || typeof found.pages !== "object") {
+    if (found?.format !== FORMAT || !found.pages || typeof found.pages !== "object") {
       heardOf.textContent = "This file holds no work from this book. Nothing was changed.";
       return;
     }
-    const [here] = MINE.split("/").slice(-1);
-    for (const [page, one] of Object.entries(found.pages)) {
-      if (page === here) mine = work(one);
-      write(MINE.slice(0, -here.length) + page, work(one));
+    remember();
+    const here = MINE.slice(FOLDER.length);
+    const both = Object.entries(found.pages).map(([page, one]) => ({
+      page,
+      own: page === here ? mine : work(read(FOLDER + page)),
+      other: work(one),
+    }));
+    const differ = both.flatMap(({ own, other }) =>
+      Object.keys(other.changes).filter((id) => own.changes[id] && own.changes[id][1] !== other.changes[id][1]),
+    ); // prettier-ignore
+    const ask = `The file has other code for ${many(differ.length, "cell")} that you changed here. Take it in place of yours?`;
+    const over = !differ.length || confirm(ask);
+    for (const { page, own, other } of both) {
+      const [first, last] = over ? [own, other] : [other, own];
+      const changes = { ...first.changes, ...last.changes };
+      const all = { changes, solved: [...new Set([...own.solved, ...other.solved])] };
+      if (page === here) mine = all;
+      write(FOLDER + page, all);
     }
     for (const cell of cells) if (cell.area) setText(cell, keptText(cell));
     remember();
     mark();
-    heardOf.textContent = `Your work on ${many(Object.keys(found.pages).length, "page")} is here again.`;
+    const again = `Your work on ${many(both.length, "page")} is here again.`;
+    heardOf.textContent = blocked ? `Your work on this page is here again. ${keptNothing}` : again;
   }
 
   function erase() {
     if (!confirm("Erase your changes and what you solved, on all pages of this book?")) return;
     try {
-      for (const key of Object.keys(localStorage)) if (key.startsWith(KEYS)) write(key, null);
+      for (const key of Object.keys(localStorage)) if (key.startsWith(FOLDER)) write(key, null);
     } catch {
       blocked = true;
     }
@@ -195,7 +224,14 @@
   bar.append(begin, status, progress);
   if (asked.length) bar.append(own);
   tally();
+  const other = Object.keys(mine.changes).filter(
+    (id) => mine.changes[id][0] !== cells.find((c) => c.id === id)?.source,
+  ).length;
   if (blocked) heardOf.textContent = keptNothing;
+  else if (other)
+    heardOf.textContent =
+      `The book has changed the code of ${many(other, "cell")} since you did. Your code is not ` +
+      "shown here; “Save as a file” has it.";
   // Beside the sections of the page, not in one: so it stays in view down to the last cell.
   let spot = cells[0].el;
   while (spot.parentElement.parentElement.closest("section")) spot = spot.parentElement;
@@ -265,7 +301,7 @@
       "aria-label": `Code of ${cell.name}`,
       "aria-describedby": "live-keys",
     });
-    cell.area.value = keptText(cell);
+    cell.area.value = cell.written = keptText(cell);
     // Tab indents once something was typed here; it leaves a cell that is passed through, and
     // after Escape: nobody is trapped.
     let indents = false;
@@ -382,7 +418,8 @@
     const only = new Map();
     for (const cell of different)
       if (cell.handles) only.set(cell.place, follow.renamed(cell.shown, text(cell)));
-    const later = follow.after(cells, follow.graph(cells), different.map((c) => c.place), only);
+    const first = cells.filter((c) => different.includes(c) || (c.stale && !c.needs));
+    const later = follow.after(cells, follow.graph(cells), first.map((c) => c.place), only);
     let count = 0;
     for (const cell of cells) {
       if (!cell.mark) continue;
@@ -618,7 +655,7 @@
     worker = new Worker(new URL("worker.mjs", home), { type: "module" });
     ready = false;
     loaded = turns = 0;
-    for (const cell of cells) cell.turn = 0;
+    for (const cell of cells) cell.turn = cell.last = 0;
     expected = megabytes[0] * 1e6;
     progress.hidden = false;
     advance(0);
@@ -726,13 +763,21 @@
     if (cell.time) cell.time.textContent = told;
   }
 
+  // A cell with all that it may read: of code that was changed and has not run yet, any word.
+  function asItStands(cell) {
+    if (cell.extra || text(cell) === cell.shown) return cell;
+    const words = text(cell).match(/[\p{L}_][\p{L}\p{N}_]*/gu) ?? [];
+    const reads = [...new Set([...(cell.names.reads ?? []), ...words])];
+    return { ...cell, names: { ...cell.names, reads } };
+  }
+
   // The next cell, after the cells above that have to run before it: what it needs of them is not
   // in this worker yet, or was changed in place since.
   function prepared() {
     for (let tries = 0; tries < 1000; tries++) {
       const cell = [...waiting].sort((a, b) => a.place - b.place)[0];
       if (!cell) return undefined;
-      const those = cell.extra ? cells.with(cell.place, cell) : cells;
+      const those = cells.with(cell.place, asItStands(cell));
       const graph = follow.graph(those);
       const lists = [...graph[cell.place].from.values()].flat();
       // of code that was changed and has not run yet, nobody knows what it needs
@@ -748,14 +793,15 @@
   }
 
   function spoiled(graph, place) {
-    const found = follow.spoiled(graph, place, cells.map((c) => c.turn));
+    const found = follow.spoiled(graph, place, cells.map((c) => c.last));
     if (!found) return undefined;
     const { maker, name } = found;
     cells[maker].turn = 0;
     const others = cells.filter((_, k) => {
       const { changes, from } = graph[k];
-      return k > maker && changes.has(name) && from.get(name)?.at(-1) === maker && cells[k].turn;
+      return k > maker && changes.has(name) && from.get(name)?.at(-1) === maker && cells[k].last;
     });
+    for (const cell of others) cell.turn = 0; // whoever needs them has them run, after an error too
     return [cells[maker], ...others];
   }
 
@@ -795,6 +841,7 @@
     if (cell.cancelled && !ok) {
       cell.stale = true;
       cell.turn = 0;
+      cell.last = ++turns; // half of it ran, and may have changed what is above
       if (spread && !cell.extra) waiting.add(cell);
     } else if (!cell.extra) settled(cell);
     if (cell.failed) drop();
@@ -819,7 +866,7 @@
   // What a cell gave to names, against what it gave before: cells below take what differs.
   function settled(cell) {
     const before = cell.shown;
-    cell.turn = ++turns;
+    cell.turn = cell.last = ++turns;
     cell.shown = cell.sent;
     cell.stale = false;
     if (cell.kind === "check" && cell.said.startsWith("Right")) {
@@ -830,8 +877,12 @@
     const { prints, altered, ...names } = cell.news ?? {};
     if (!prints) return; // no Python: nothing ran
     const old = cell.prints ?? (before === cell.sent ? prints : {});
-    const given = new Set([...Object.keys(old), ...Object.keys(prints), ...altered]);
+    const { writes = [], perhaps = [], changes = [] } = cell.names;
+    const gave = cell.prints ? Object.keys(old) : [...Object.keys(old), ...writes, ...perhaps];
+    const once = [...gave, ...(cell.altered ?? changes)];
+    const given = new Set([...once, ...Object.keys(prints), ...altered]);
     const fine = (name) => cell.prints === undefined && before === cell.sent;
+    const earlier = follow.graph(cells); // with names that the cell gives or changes no more
     cell.names = names;
     cell.altered = altered;
     cell.prints = prints;
@@ -839,16 +890,19 @@
     const remade = new Set();
     for (const [k, { from, changes }] of graph.entries())
       for (const name of changes)
-        if (k > cell.place && from.get(name)?.includes(cell.place) && cells[k].turn) {
+        if (k > cell.place && from.get(name)?.includes(cell.place) && cells[k].last) {
           remade.add(name);
-          if (spread || cell.quiet) waiting.add(cells[k]);
+          if (!spread && !cell.quiet) continue;
+          waiting.add(cells[k]);
+          cells[k].turn = 0;
         }
     const differs = new Set(
       [...given].filter((name) => !fine(name) && (!prints[name] || prints[name] !== old[name])),
     );
     if (!cell.quiet) for (const name of remade) differs.add(name);
     else for (const name of [...differs]) if (!prints[name]) differs.delete(name);
-    for (const k of follow.readers(cells, graph, cell.place, differs)) {
+    const readers = [earlier, graph].flatMap((g) => follow.readers(cells, g, cell.place, differs));
+    for (const k of new Set(readers)) {
       const one = cells[k];
       if (one.asked && waiting.has(one)) continue;
       if (one.kind === "answer" || one.needs) continue;

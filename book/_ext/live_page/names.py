@@ -303,6 +303,8 @@ class _Cell(ast.NodeVisitor):
             self.read(name)
         for name in inner.changes:
             self.change(name)
+        for name in inner.given:
+            self.write(name)
 
     visit_ListComp = visit_SetComp = visit_DictComp = visit_GeneratorExp = _comprehension
 
@@ -321,6 +323,7 @@ class _Function:
         else:
             parts = node.body if isinstance(node.body, list) else [node.body]
         shared, loads, self.changes, inner = set(), set(), set(), []
+        self.given = set()  # by `:=` in a comprehension: to the scope around it
         stack = list(parts)
         while stack:
             each = stack.pop()
@@ -338,6 +341,10 @@ class _Function:
                 continue
             if isinstance(each, ast.Global):
                 shared |= set(each.names)
+            elif isinstance(each, ast.NamedExpr) and isinstance(node, COMPREHENSIONS):
+                self.given.add(each.target.id)
+                stack.append(each.value)
+                continue
             elif isinstance(each, ast.Name):
                 (loads if isinstance(each.ctx, ast.Load) else own).add(each.id)
             elif isinstance(each, ast.alias):
@@ -352,6 +359,7 @@ class _Function:
                     self.changes |= _bases(each.func)
             stack += ast.iter_child_nodes(each)
         for scope in map(_Function, inner):
+            (self.given if isinstance(node, COMPREHENSIONS) else own).update(scope.given)
             loads |= scope.reads
             self.changes |= scope.changes
         own -= shared

@@ -1,0 +1,155 @@
+"""*Run this page*: what a reader did is kept, whatever happens to tabs, files and the book."""
+
+import json
+
+import live_pages
+import pytest
+
+pytestmark = pytest.mark.browser
+ONE, TWO = {"id": "one", "source": "a = 1"}, {"id": "two", "source": "b = 2"}
+ASKED = {"id": "three", "source": "mine = ...", "kind": "answer"}
+STORED = "() => JSON.parse(localStorage.getItem('live:/book/a.html'))"
+FULL = "() => { Storage.prototype.setItem = () => { throw new Error('full') } }"
+
+
+@pytest.fixture
+def reader(browser):
+    """Opens pages of such cells, in tabs that share what is kept."""
+    context = browser.new_context()
+    context.add_init_script(live_pages.BESIDE.replace("await window.runs(message)", "[]"))
+
+    def opened(*cells, name="a.html"):
+        tab = context.new_page()
+        tab.on("pageerror", lambda error: pytest.fail(str(error)))
+        show(tab, *cells, name=name)
+        return tab
+
+    yield opened
+    context.close()
+
+
+def show(tab, *cells, name="a.html"):
+    tab.goto(live_pages.set_up(tab, [*(cells or (ONE, TWO)), ASKED], name))
+    tab.get_by_role("button", name="Run this page").click()
+
+
+def field(tab, k):
+    return tab.get_by_role("textbox").nth(k)
+
+
+def changes(tab) -> dict:
+    return {name: code for name, (_, code) in (tab.evaluate(STORED) or {})["changes"].items()}
+
+
+def saved(tab) -> dict:
+    tab.locator(".live-own").evaluate("(el) => (el.open = true)")
+    tab.evaluate(
+        "() => { URL.createObjectURL = (content) => ((window.handed = content), 'about:blank#');"
+        " HTMLAnchorElement.prototype.click = () => {} }"
+    )
+    tab.get_by_role("button", name="Save as a file").click()
+    return json.loads(tab.evaluate("() => window.handed.text()"))
+
+
+def take(tab, content, accept=True):
+    """Open a file; what was asked, and what is told then."""
+    asked = []
+
+    def answer(dialog):
+        asked.append(dialog.message)
+        (dialog.accept if accept else dialog.dismiss)()
+
+    tab.once("dialog", answer)
+    text = content if isinstance(content, str) else json.dumps(content)
+    file = {"name": "x.json", "mimeType": "application/json", "buffer": text.encode()}
+    kept = tab.locator(".live-kept")
+    kept.evaluate("(el) => (el.textContent = '')")
+    tab.locator("input[type=file]").set_input_files(file)
+    tab.wait_for_function("() => document.querySelector('.live-kept').textContent")
+    tab.remove_listener("dialog", answer)
+    return asked, kept.text_content()
+
+
+def file(**pages) -> dict:
+    return {"format": "direct-drive-work-1", "pages": {f"{n}.html": of for n, of in pages.items()}}
+
+
+def test_two_tabs_of_a_page_keep_what_was_done_in_each(reader):
+    tab, other = reader(), reader()
+    field(tab, 0).fill("a = 10")
+    field(other, 1).fill("b = 20")
+    field(other, 1).fill("b = 30")
+    assert changes(tab) == {"one": "a = 10", "two": "b = 30"}
+    assert saved(tab)["pages"]["a.html"]["changes"]["two"] == ["b = 2", "b = 30"]
+    field(tab, 0).fill("a = 1")  # as in the book
+    assert changes(tab) == {"two": "b = 30"}
+
+
+def test_code_that_the_book_has_changed_since_is_kept(reader):
+    tab = reader()
+    field(tab, 0).fill("a = 10")
+    field(tab, 1).fill("b = 20")
+    show(tab, {"id": "one", "source": "a = 1.0"})  # and the second is gone
+    assert "changed the code of 2 cells" in tab.locator(".live-kept").text_content()
+    field(tab, 0).fill("a = 11.0")
+    kept = {"one, earlier": "a = 10", "two": "b = 20", "one": "a = 11.0"}
+    assert changes(tab) == kept
+    assert saved(tab)["pages"]["a.html"]["changes"].keys() == kept.keys()
+    show(tab)
+    assert field(tab, 1).input_value() == "b = 20"
+
+
+@pytest.mark.parametrize("accept", [True, False])
+def test_a_file_does_not_replace_work_unasked(reader, accept):
+    tab = reader()
+    field(tab, 0).fill("a = 10")
+    field(tab, 1).fill("b = 20")
+    given = {"changes": {"one": ["a = 1", "a = 7"]}, "solved": ["three"]}
+    asked, told = take(tab, file(a=given, b=given), accept)
+    assert len(asked) == 1 and "other code for 1 cell " in asked[0] and "2 pages" in told
+    assert changes(tab) == {"one": "a = 7" if accept else "a = 10", "two": "b = 20"}
+    assert field(tab, 0).input_value() == changes(tab)["one"]
+    assert "Solved: 1 of 1" in tab.locator(".live-own summary").inner_text()
+    show(tab, name="b.html")
+    assert field(tab, 0).input_value() == "a = 7"
+
+
+@pytest.mark.parametrize(
+    "content",
+    ['{"format": "direct-drive-work-1", "pag', "", "[]", file() | {"pages": None},
+     file() | {"format": "direct-drive-work-2"}],
+)  # fmt: skip
+def test_a_file_that_cannot_be_read_changes_nothing(reader, content):
+    tab = reader()
+    field(tab, 0).fill("a = 10")
+    asked, told = take(tab, content)
+    assert not asked and "Nothing was changed" in told and changes(tab) == {"one": "a = 10"}
+
+
+def test_a_file_with_oddities_leaves_a_page_that_works(reader):
+    tab = reader()
+    take(tab, file(a={"changes": {"one": 5, "two": ["b = 2", "b = 3"]}, "solved": 3}, b=None))
+    show(tab)
+    assert [field(tab, k).input_value() for k in (0, 1)] == ["a = 1", "b = 3"]
+
+
+def test_where_nothing_more_is_kept_it_is_told_and_a_file_has_all(reader):
+    tab = reader()
+    field(tab, 0).fill("a = 10")
+    tab.evaluate(FULL)
+    field(tab, 1).fill("b = 20")
+    assert "keeps nothing" in tab.locator(".live-kept").text_content()
+    field(tab, 0).fill("a = 11")
+    found = saved(tab)["pages"]["a.html"]["changes"]
+    assert {name: code for name, (_, code) in found.items()} == {"one": "a = 11", "two": "b = 20"}
+    assert "keeps nothing" in take(tab, file(b={"changes": {"one": ["a = 1", "a = 7"]}}))[1]
+
+
+def test_another_book_of_the_server_is_left_alone(reader):
+    tab = reader()
+    tab.evaluate("() => localStorage.setItem('live:/other/a.html', 'theirs')")
+    field(tab, 0).fill("a = 10")
+    assert saved(tab)["pages"].keys() == {"a.html"}
+    tab.once("dialog", lambda dialog: dialog.accept())
+    tab.get_by_role("button", name="Erase").click()
+    assert tab.evaluate("() => Object.keys(localStorage)") == ["live:/other/a.html"]
