@@ -32,6 +32,17 @@ def _sigmoid(x):
     return 0.5 * (1 + np.tanh(0.5 * x))
 
 
+def _numbers(name, value):
+    """`value` as an array, of whatever kind of real numbers; ValueError otherwise."""
+    try:
+        array = np.asarray(value)
+    except ValueError:  # rows of different lengths
+        array = None
+    if array is None or array.dtype.kind not in "fiu":
+        raise ValueError(f"{name} must be an array of numbers, got {told(value)}")
+    return array
+
+
 @dataclass(frozen=True, repr=False)
 class Weights:
     """Weights of one network, or of many with leading axes.
@@ -46,9 +57,9 @@ class Weights:
     output_bias: np.ndarray  #: (..., output)
 
     def __post_init__(self):
-        given = {name: np.asarray(getattr(self, name)) for name in WEIGHT_NAMES}
+        given = {name: _numbers(name, getattr(self, name)) for name in WEIGHT_NAMES}
         filters, outputs = given["hidden_weights"], given["output_bias"]
-        if filters.dtype.kind not in "fiu" or filters.ndim < 3:
+        if filters.ndim < 3:
             raise ValueError(
                 "hidden_weights must be numbers of shape (..., hidden, joint, width), got "
                 f"{told(filters)}"
@@ -127,7 +138,22 @@ class Weights:
         return _joined(np.stack, list(parts))
 
     def __getitem__(self, index) -> Weights:
-        """The network(s) at `index` of the leading axis."""
+        """The network(s) at `index` of the leading axis.
+
+        Raises
+        ------
+        IndexError
+            If there is none at `index`, or if it goes on into the weights of a network.
+        TypeError
+            For an index into a single network.
+        """
+        lead = self.hidden_bias.shape[:-1]
+        try:
+            np.broadcast_to(True, lead)[index]
+        except IndexError as error:
+            if lead:
+                raise
+            raise TypeError("weights must be of an ensemble: this is a single network") from error
         window = self.hidden_weights.shape[-2:]
         return from_rows(self.rows[index], self.output_weights[index], window)
 
@@ -188,6 +214,12 @@ def from_rows(rows: np.ndarray, output_weights: np.ndarray, window: tuple) -> We
 
 def _joined(join, parts) -> Weights:
     """What numpy's `join` makes of several ensembles' matrices."""
+    for part in parts:
+        like("parts", part, "Weights")
+    if len({(part.output_weights.shape[-2:], part.rows.shape[-1]) for part in parts}) != 1:
+        raise ValueError("parts must be networks of one size, and one at least")
+    if join is np.concatenate and any(part.hidden_bias.ndim < 2 for part in parts):
+        raise ValueError("parts must be ensembles, of one network at least: weights[None]")
     rows = join([part.rows for part in parts])
     output_weights = join([part.output_weights for part in parts])
     return from_rows(rows, output_weights, parts[0].hidden_weights.shape[-2:])
