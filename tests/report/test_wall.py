@@ -7,6 +7,7 @@ import sys
 
 import numpy as np
 import pytest
+from book_pages import ROOT
 
 from ddlib.tables import typeset
 from workshop.report.evidence import cards, claims, expressions, wall
@@ -94,4 +95,4 @@ def test_what_would_have_changed_the_verdict(make, monkeypatch):
 
 def test_a_page_that_runs_in_the_browser_needs_no_templates():
     code = "import sys; sys.modules['jinja2'] = None; import beyond.chapters.verdict"
-    subprocess.run([sys.executable, "-c", code], check=True)
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT / "book")
