@@ -108,8 +108,8 @@ def test_guess_then_double_the_speed(tmp_path, visit, terms):
     assert said.inner_text().startswith("Not inertial: the largest at the elbow is coupling")
     page.get_by_role("button", name="The ratio stays").click()
     assert said.inner_text().startswith("Yes, the ratio stays")
-    assert page.get_by_role("switch", name="Double the speed").is_checked()
     assert_curves(page, terms.curves_at(doubled=True))
+    assert page.get_by_role("switch", name="Double the speed").is_checked()
     after = page.locator(".terms tbody tr").nth(2).locator("td").all_inner_texts()
     values = [[float(x.replace("−", "-")) for x in row] for row in (before, after)]
     np.testing.assert_allclose(values[1], 4 * np.array(values[0]), atol=0.03)
@@ -124,9 +124,11 @@ def test_time_moves_the_arm_and_plays_twice_as_fast(tmp_path, visit, terms):
     arm = ".arm.real .links"
     start = page.get_attribute(arm, "d")
     page.get_by_role("slider", name="Time").press("Home")
+    page.evaluate(NEXT_FRAME)
     assert page.get_attribute(arm, "d") != start
     page.get_by_role("switch", name="Double the speed").check()
     page.get_by_role("slider", name="Time").press("End")
+    page.evaluate(NEXT_FRAME)
     assert page.locator(".player output").inner_text().startswith("1.50")
     page.get_by_role("button", name="Play").click()
     page.wait_for_function("parseFloat(document.querySelector('.player output').textContent) > 0.3")

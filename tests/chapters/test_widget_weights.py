@@ -136,15 +136,24 @@ def test_press_a_row_and_subtract_the_start(tmp_path, visit, widget, pair):
     assert not here.problems
 
 
+DRAWINGS = """() => {
+  const path = document.querySelector("svg.strip .positive");
+  window.drawings = new Set([path.getAttribute("d")]);
+  new MutationObserver(() => {
+    drawings.add(path.getAttribute("d"));
+    drawings.last = performance.now();
+  }).observe(path, { attributes: true });
+}"""
+"""Keeps every drawing of the squares from now on, and when the last one came."""
+
+
 @pytest.mark.browser
 def test_the_start_leaves_slowly(tmp_path, visit, widget, pair):
     page = visit(page_of(tmp_path / "page.html", widget)).page
     page.get_by_label("Unit", exact=True).select_option(label="hidden 1")
     assert_shown(page, pair, "hidden 0", "shoulder", False)
-    before = squares(page)
+    page.evaluate(DRAWINGS)
     page.get_by_label("Subtract the start").press(" ")
-    page.wait_for_timeout(200)
-    between = squares(page)
-    page.wait_for_timeout(1200)
+    page.wait_for_function("drawings.size > 1 && performance.now() - drawings.last > 500")
     assert_shown(page, pair, "hidden 0", "shoulder", True)
-    assert len({before.tobytes(), between.tobytes(), squares(page).tobytes()}) == 3
+    assert page.evaluate("drawings.size") > 2  # before, on the way, after

@@ -216,7 +216,8 @@ def assert_curves(page, known, small=1e-6):
 
 
 def shown_values(page) -> list[float]:
-    """The numbers beside the sliders."""
+    """The numbers beside the sliders, once what was changed has been drawn."""
+    page.evaluate(NEXT_FRAME)
     texts = page.locator(".slider output").all_inner_texts()
     return [float(re.match(r"[−\d.]+", x)[0].replace("−", "-")) for x in texts]
 
