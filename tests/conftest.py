@@ -122,7 +122,7 @@ class Visit:
 
 @pytest.fixture
 def visit(browser):
-    """Open a page: `visit(url, scheme="light", width=1280)` -> Visit.
+    """Open a page: `visit(url, scheme="light", width=1280, height=800)` -> Visit.
 
     `lands` is the address pattern that the page redirects to; other options are those of
     Playwright's ``new_context``.
@@ -130,9 +130,14 @@ def visit(browser):
     contexts = []
 
     def open_page(
-        url: str, scheme: str = "light", width: int = 1280, lands: str | None = None, **options
+        url: str,
+        scheme: str = "light",
+        width: int = 1280,
+        lands: str | None = None,
+        height: int = 800,
+        **options,
     ) -> Visit:
-        size = {"width": width, "height": 800}
+        size = {"width": width, "height": height}
         context = browser.new_context(color_scheme=scheme, viewport=size, **options)
         contexts.append(context)
         if chromium.FIREFOX and options.get("reduced_motion") == "reduce":

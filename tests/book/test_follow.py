@@ -13,7 +13,7 @@ import matplotlib
 import pytest
 from book_pages import ROOT, WALK
 from chapter_rules import CHANGE_THIS, tags
-from open_cells import lesson
+from open_cells import SHORT, lesson
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 sys.path.insert(0, str(ROOT / "book" / "_ext" / "live_page"))
@@ -149,6 +149,7 @@ def test_the_graph_of_a_lesson_against_what_running_shows(script, page, monkeypa
     matplotlib.use("Agg")
     cells = opened(page)
     graph = script.evaluate(GRAPH, cells)
+    settings = next(cell.id for cell in lesson(page).cells if CHANGE_THIS in tags(cell))
     space: dict = {}
     monkeypatch.setattr(kernel, "space", space)
     made: list[dict] = []
@@ -163,6 +164,8 @@ def test_the_graph_of_a_lesson_against_what_running_shows(script, page, monkeypa
             every = {name: value for each in made for name, value in each.items()}
             prints = {name: kernel.footprint(value) for name, value in every.items()}
             exec(compile(cell["source"], cell["id"], "exec"), space)
+            if cell["id"] == settings:
+                exec(SHORT.get(page[5:], ""), space)
             wrote = {n for n, v in space.items() if before.get(n) is not v}
             wrote -= {"__builtins__", "__warningregistry__"}  # Python's own
             own = cell["names"]

@@ -15,7 +15,7 @@ import torch
 import traitlets
 from book_pages import ROOT, WALK
 from chapter_rules import visible
-from open_cells import lesson
+from open_cells import SHORT, lesson
 
 import ddlib.learning
 from ddlib.learning import TrainingSet, Weights
@@ -163,16 +163,6 @@ absent.ABSENT = absent.INERT = ()
 absent.start()  # ensembles are trained by numpy either way
 """
 
-SHORT = {
-    "stirring": "few, many = 5, 20",
-    "backpropagation": "epochs, warm_up = 400, 50",
-    "window-networks": "epochs = 400",
-    "rivals": "epochs = 400",
-    "networks-that-walk": "epochs = 100",
-    "whole-state-space": "epochs, warm_up = 400, 50",
-}
-"""Settings with which a lesson's training takes seconds: the cells are the same."""
-
 RUN = """
 from chapter_rules import CHANGE_THIS, is_starter, tags, visible
 from open_cells import execute, lesson
@@ -218,7 +208,7 @@ def test_an_ensemble_is_trained_as_by_the_package(capsys):
 @pytest.mark.slow
 @pytest.mark.parametrize("page", WITH_TORCH)
 def test_open_cells_print_the_same_by_what_stands_in_for_pytorch(page):
-    code = RUN.format(page=page, short=SHORT[page.removeprefix("book/")])
+    code = RUN.format(page=page, short=SHORT[page[5:]])
     told = [in_a_page(code, own) for own in (True, False)]
     assert told[0] == told[1] and len(told[0].splitlines()) > 5
 

@@ -4,7 +4,7 @@ import pytest
 from book_pages import LESSONS, ROOT, WALK
 from chapter_rules import SHAPE, TUTORIAL, words
 from nine_answers import Nine, wrong
-from open_cells import CHANGES, execute, exercises, imports, lesson, run
+from open_cells import CHANGES, SHORT, execute, exercises, imports, lesson, run
 
 from workshop.chapters import exercises as engine
 
@@ -50,9 +50,11 @@ def test_open_cells_run_alone(page, tmp_path, monkeypatch):
     "page, change", [(page, change) for page in WALK for change in CHANGES.get(page[5:], ())]
 )
 def test_a_change_goes_through_to_the_last_figure(page, change, tmp_path, monkeypatch):
+    """After a short training, unless the change says how long."""
     (tmp_path / "data").symlink_to(DATA)
     monkeypatch.chdir(tmp_path)
-    run(page, CHANGES[page[5:]][change])
+    name = page[5:]
+    run(page, SHORT.get(name, ""), CHANGES[name][change])
 
 
 def test_each_lesson_is_run_with_three_other_settings():

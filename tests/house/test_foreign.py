@@ -33,7 +33,7 @@ def test_jogs_multiply_every_real_draw_and_leave_integers(name, factor, tmp_path
 def test_what_holds_and_what_fails_is_told(monkeypatch, capfd):
     for code, told in (("pass", "all hold"), ("raise SystemExit(1)", "jog-1: claims")):
         run = {"claims": ["-c", code]}
-        monkeypatch.setattr(foreign, "commands", lambda jobs, root, run=run: run)
+        monkeypatch.setattr(foreign, "commands", lambda jobs, root, ci, run=run: run)
         assert foreign.main(["jog-1", "--jobs", "1"]) == (told != "all hold")
         assert f"1 foreign machine: {told}" in capfd.readouterr().out
     with pytest.raises(SystemExit):

@@ -40,7 +40,7 @@ RUN = """
 async ([where, only]) => {
   const rules = only ?? axe.getRules().map((rule) => rule.ruleId);
   const runOnly = { type: "rule", values: rules };
-  const include = where === "changed" ? window.changed : [document];
+  const include = where === "changed" ? window.changed : [document.querySelector(where)];
   if (!include.length) return [];
   const { violations } = await axe.run({ include }, { runOnly, resultTypes: ["violations"] });
   return violations.flatMap(({ id, impact, nodes }) =>
@@ -55,11 +55,11 @@ COLOURS = ["color-contrast", "color-contrast-enhanced", "link-in-text-block"]
 
 # What other rules can see of each element; `changed`: what is seen and was not so before.
 LOOK = """
-() => {
+(where) => {
   const before = window.looked ?? new Map();
   window.looked = new Map();
   window.changed = [];
-  for (const el of document.querySelectorAll("body *")) {
+  for (const el of document.querySelectorAll(`${where} *`)) {
     const { x, y, width, height } = el.getBoundingClientRect();
     const told = [el.checkVisibility({ visibilityProperty: true }), x, y, width, height];
     for (const { name, value } of el.attributes) told.push(name, value);
@@ -82,11 +82,11 @@ def unfold(page) -> None:
 def violations(page) -> list[str]:
     """What axe finds, with everything unfolded that a reader can unfold."""
     unfold(page)
-    return page.evaluate(RUN, ["everywhere", None])
+    return page.evaluate(RUN, ["html", None])
 
 
-def violations_in(page, *schemes: str) -> list[str]:
-    """What axe finds in each colour scheme.
+def violations_in(page, *schemes: str, where: str = "html") -> list[str]:
+    """What axe finds in each colour scheme, on a page or in a part of it.
 
     The rules on colours are asked in each of them about everything, the others in the first, and
     then about what has changed.
@@ -95,7 +95,7 @@ def violations_in(page, *schemes: str) -> list[str]:
     for k, scheme in enumerate(schemes):
         chromium.coloured(page, scheme)
         unfold(page)
-        page.evaluate(LOOK)
-        some = [["everywhere", COLOURS], ["changed", None]] if k else [["everywhere", None]]
+        page.evaluate(LOOK, where)
+        some = [[where, COLOURS], ["changed", None]] if k else [[where, None]]
         found += [f"{scheme}: {fault}" for asked in some for fault in page.evaluate(RUN, asked)]
     return found

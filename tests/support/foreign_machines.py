@@ -1,9 +1,9 @@
 """Notebooks and measured claims as another machine would see them: ``make foreign``.
 
 Rounding differs between processors, libraries and numbers of threads, and thousands of epochs
-make another network of it. Under each of `SETTINGS` every notebook must run, with its checks,
-no verdict of ``book/claims.yml`` may be contradicted, and of the committed results every claim must
-measure what is kept of it.
+make another network of it. Under each of `SETTINGS` every notebook must run, with its checks, and
+the solutions of all exercises must be judged right. No verdict of ``book/claims.yml`` may be
+contradicted, and of the committed results every claim must measure what is kept of it.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from functools import partial
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -56,25 +57,25 @@ def environment(name: str, folder: Path) -> dict[str, str]:
     return {**os.environ, "OMP_NUM_THREADS": "1", **own, **differs}
 
 
-def commands(jobs: int, root: Path) -> dict[str, list]:
-    """What is checked, and how."""
-    pages = sorted(
-        path for where in ("", "evidence/") for path in root.glob(f"book/{where}*.ipynb")
-    )
+def commands(jobs: int, root: Path, ci: bool = False) -> dict[str, list]:
+    """What is checked, and how; in CI, of lessons the open cells and exercises alone."""
+    folders = ("evidence/",) if ci else ("", "evidence/")
+    pages = sorted(path for where in folders for path in root.glob(f"book/{where}*.ipynb"))
     pytest = ["-m", "pytest", "-q", "-n", jobs]
     files = [f"tests/report/test_{name}.py" for name in ("claims", "judging")]
     return {
         "claims": [*pytest, *files, "-k", "verdicts_are or values_are"],
+        "lessons": [*pytest, "tests/book/test_walk.py", "-k", "open_cells_run_alone"],
         "notebooks": [*pytest, "--nbmake", f"--nbmake-timeout={TIMEOUT}", *pages],
     }
 
 
-def check(name: str, jobs: int, root: Path = ROOT) -> list[str]:
+def check(name: str, jobs: int, root: Path = ROOT, ci: bool = False) -> list[str]:
     """Run all checks under one setting; the names of those that fail."""
     failed = []
     with tempfile.TemporaryDirectory() as folder:
         env = environment(name, Path(folder))
-        for what, command in commands(jobs, root).items():
+        for what, command in commands(jobs, root, ci).items():
             started = time.monotonic()
             print(f"==> {name}: {what}", flush=True)
             if subprocess.run([sys.executable, *map(str, command)], env=env, cwd=root).returncode:
@@ -119,7 +120,7 @@ def main(arguments=None) -> int:
         if not set(name.split("+")) <= set(SETTINGS):
             parser.error(f"settings must be {known}, got {name!r}")
     names = options.settings or ((CI,) if options.ci else tuple(SETTINGS))
-    run = reproduce if options.reproduce else check
+    run = reproduce if options.reproduce else partial(check, ci=options.ci)
     failed = [what for name in names for what in run(name, options.jobs)]
     count = f"{len(names)} foreign machine{'s' * (len(names) > 1)}"
     print(f"==> {count}: " + ("; ".join(failed) or "all hold"), flush=True)

@@ -20,6 +20,25 @@ import solved
 SHOWN = ("_repr_html_", "_repr_svg_", "_repr_markdown_", "_repr_png_", "_repr_mimebundle_")
 CHANGES = yaml.safe_load((ROOT / "tests" / "support" / "changes.yml").read_text("utf-8")) or {}
 
+SHORT = {
+    "adaptive-control": "motions = 2",
+    "backpropagation": "epochs, warm_up = 400, 50",
+    "convolution-filters": "epochs = 400",
+    "global-view": "epochs = 400",
+    "hinton-diagrams": "epochs = 400",
+    "inertia-in-the-weights": "epochs = 400",
+    "learning-in-the-loop": "before, after = 3, 3",
+    "networks-that-walk": "epochs = 100",
+    "rivals": "epochs = 400",
+    "run-time": "epochs = 400",
+    "stirring": "few, many = 5, 20",
+    "whole-state-space": "epochs, warm_up = 400, 50",
+    "whose-filters": "epochs, steps = 400, 1000",
+    "window-networks": "epochs = 400",
+    "window-size": "epochs = 400",
+}
+"""Settings with which a lesson's training takes seconds: the cells are the same."""
+
 
 def lesson(page: str):
     return nbformat.read(source(page), as_version=4)
@@ -50,10 +69,10 @@ def execute(source_code: str, space: dict, name: str) -> str:
     return printed.getvalue()
 
 
-def run(page: str, change: str = "") -> tuple[dict, float]:
+def run(page: str, *changes: str) -> tuple[dict, float]:
     """What the open cells leave behind, and the seconds of one core that they took.
 
-    The change is added to the cell *Change this*.
+    The changes are added to the cell *Change this*.
     """
     space = {"__name__": "__main__"}
     matplotlib.use("Agg")
@@ -61,8 +80,8 @@ def run(page: str, change: str = "") -> tuple[dict, float]:
     for cell in visible(lesson(page)):
         if is_starter(cell):
             continue
-        added = f"\n{change}" if CHANGE_THIS in tags(cell) else ""
-        execute(cell.source + added, space, f"{page}: {cell.id}")
+        lines = [cell.source, *changes] if CHANGE_THIS in tags(cell) else [cell.source]
+        execute("\n".join(lines), space, f"{page}: {cell.id}")
     if "matplotlib.pyplot" in sys.modules:
         sys.modules["matplotlib.pyplot"].close("all")
     return space, time.process_time() - started
