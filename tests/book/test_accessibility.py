@@ -33,3 +33,33 @@ def test_faults_are_found(tmp_path, visit):
     found = " ".join(violations(visit(page.as_uri()).page))
     for rule in ("image-alt", "button-name", "label", "color-contrast-enhanced", "heading-order"):
         assert f"{rule} (" in found
+
+
+ROWS = "".join(f"<tr><td>row {k}</td></tr>" for k in range(9))
+PALE = {
+    "a word": ".pale { color: #999 }",
+    "what is behind a row": "tr:nth-child(7) { background: #777 }",
+    "a row in the dark": "@media (prefers-color-scheme: dark) { tr:nth-child(7) { color: #333 } }",
+    "all together": "main { opacity: 0.5 }",
+    "a word alone": "td:hover, tr:nth-child(3) td { font-size: 9px; color: #6a6a6a }",
+}
+CSS = """
+  body { background: #fff }
+  @media (prefers-color-scheme: dark) { body { background: #000; color: #fff } }
+"""
+
+
+@pytest.mark.chromium
+@pytest.mark.parametrize("rule", PALE.values(), ids=PALE)
+def test_of_many_rows_the_one_that_is_pale_is_found(tmp_path, visit, rule):
+    page = tmp_path / "page.html"
+    words = "".join(f"<p{' class=pale' * (k == 5)}>words</p>" for k in range(9))
+    head = f'<!doctype html><html lang="en"><meta charset="utf-8"><title>x</title><style>{CSS}'
+    body = f"</style><main><h1>One</h1>{words}<table>{ROWS}</table></main>"
+    page.write_text(head + body)
+    assert not [
+        x for x in violations_in(visit(page.as_uri()).page, "light", "dark") if "color" in x
+    ]
+    page.write_text(head + rule + body)
+    found = violations_in(visit(page.as_uri()).page, "light", "dark")
+    assert any("color-contrast-enhanced (" in fault for fault in found)

@@ -6,42 +6,17 @@ from importlib.resources import files
 
 import chromium
 
-# axe keeps the private fields of each colour in weak maps, and half of its time goes into them.
-# Maps that keep a value on its object do the same.
-KEPT = """
-class Kept {
-  key = Symbol();
-  has(object) { return Object(object) === object && Object.hasOwn(object, this.key); }
-  get(object) { return this.has(object) ? object[this.key] : undefined; }
-  set(object, value) { object[this.key] = value; return this; }
-  add(object) { return this.set(object, true); }
-  delete(object) { return this.has(object) && delete object[this.key]; }
-}
-"""
-# The same few colours are read thousands of times.
-READ_ONCE = """
-const { prototype } = axe.commons.color.Color;
-const [parse, known] = [prototype.parseString, new Map()];
-prototype.parseString = function (text) {
-  if (!known.has(text)) {
-    parse.call(this, text);
-    known.set(text, [this.r, this.g, this.b, this.alpha]);
-  }
-  [this.r, this.g, this.b, this.alpha] = known.get(text);
-  return this;
-};
-"""
-PLAIN = (files("axe_playwright_python") / "axe.min.js").read_text(encoding="utf-8")
-OWN_MAPS = f"(function (WeakMap, WeakSet) {{ {PLAIN} }}).call(window, Kept, Kept);"
-AXE = f"(() => {{ {KEPT} {OWN_MAPS} {READ_ONCE} }})()"
+AXE = (files("axe_playwright_python") / "axe.min.js").read_text(encoding="utf-8")
 
 # Rules of levels A, AA and AAA, best practices and experimental ones: none is left out.
 RUN = """
-async ([where, only]) => {
-  const rules = only ?? axe.getRules().map((rule) => rule.ruleId);
-  const runOnly = { type: "rule", values: rules };
-  const include = where === "changed" ? window.changed : [document.querySelector(where)];
+async ([include, colours, asked]) => {
+  const rules = axe.getRules().map((rule) => rule.ruleId);
+  const values = rules.filter((rule) => colours.includes(rule) === asked);
+  if (include === "each look") include = window.looks;
+  if (include === "what changed") include = window.changed;
   if (!include.length) return [];
+  const runOnly = { type: "rule", values };
   const { violations } = await axe.run({ include }, { runOnly, resultTypes: ["violations"] });
   return violations.flatMap(({ id, impact, nodes }) =>
     nodes.map(({ target, failureSummary }) =>
@@ -52,6 +27,33 @@ OPEN_ALL = "document.querySelectorAll('details').forEach((el) => { el.open = tru
 
 COLOURS = ["color-contrast", "color-contrast-enhanced", "link-in-text-block"]
 """Rules whose answer hangs on colours."""
+
+# `looks`: of all that has text, the first that looks so, by its own colour and size and by what is
+# behind it. Thousands of words of code have a dozen looks, and axe takes a second for a thousand.
+LOOKS = """
+(where) => {
+  const behind = new Map([[null, ""]]);
+  const ground = (el) => {
+    if (!behind.has(el)) {
+      const { backgroundColor, backgroundImage, opacity, filter } = getComputedStyle(el);
+      const own = [el.tagName, el.getAttribute("class"), backgroundColor, backgroundImage];
+      behind.set(el, [ground(el.parentElement), ...own, opacity, filter].join(" "));
+    }
+    return behind.get(el);
+  };
+  const found = new Map();
+  const isText = (node) => node.nodeType === Node.TEXT_NODE && node.data.trim();
+  for (const el of document.querySelectorAll(`${where}, ${where} *`)) {
+    if (![...el.childNodes].some(isText)) continue;
+    if (!el.checkVisibility({ visibilityProperty: true })) continue;
+    const style = getComputedStyle(el);
+    const own = ["color", "fill", "fontSize", "fontWeight", "textDecorationLine", "textShadow"];
+    const look = [ground(el), ...own.map((name) => style[name])].join(" ");
+    if (!found.has(look)) found.set(look, el);
+  }
+  window.looks = [...found.values()];
+}
+"""
 
 # What other rules can see of each element; `changed`: what is seen and was not so before.
 LOOK = """
@@ -76,26 +78,28 @@ def unfold(page) -> None:
     page.evaluate(OPEN_ALL)
     chromium.settle(page)
     if not page.evaluate("Boolean(window.axe)"):
-        page.evaluate(AXE)
+        page.evaluate(f"(() => {{ {AXE} }})()")
 
 
 def violations(page) -> list[str]:
     """What axe finds, with everything unfolded that a reader can unfold."""
     unfold(page)
-    return page.evaluate(RUN, ["html", None])
+    return page.evaluate(RUN, [["html"], [], False])
 
 
 def violations_in(page, *schemes: str, where: str = "html") -> list[str]:
     """What axe finds in each colour scheme, on a page or in a part of it.
 
-    The rules on colours are asked in each of them about everything, the others in the first, and
-    then about what has changed.
+    The rules on colours are asked in each of them about each look, the others in the first about
+    everything, and then about what has changed.
     """
     found = []
     for k, scheme in enumerate(schemes):
         chromium.coloured(page, scheme)
         unfold(page)
         page.evaluate(LOOK, where)
-        some = [[where, COLOURS], ["changed", None]] if k else [[where, None]]
-        found += [f"{scheme}: {fault}" for asked in some for fault in page.evaluate(RUN, asked)]
+        page.evaluate(LOOKS, where)
+        everything = "what changed" if k else [where]
+        for asked in ([everything, COLOURS, False], ["each look", COLOURS, True]):
+            found += [f"{scheme}: {fault}" for fault in page.evaluate(RUN, asked)]
     return found
