@@ -41,7 +41,7 @@ PALE = {
     "what is behind a row": "tr:nth-child(7) { background: #777 }",
     "a row in the dark": "@media (prefers-color-scheme: dark) { tr:nth-child(7) { color: #333 } }",
     "all together": "main { opacity: 0.5 }",
-    "a word alone": "td:hover, tr:nth-child(3) td { font-size: 9px; color: #6a6a6a }",
+    "a word alone": "tr:nth-child(3) td { color: #6a6a6a }",
 }
 CSS = """
   body { background: #fff }
@@ -56,10 +56,9 @@ def test_of_many_rows_the_one_that_is_pale_is_found(tmp_path, visit, rule):
     words = "".join(f"<p{' class=pale' * (k == 5)}>words</p>" for k in range(9))
     head = f'<!doctype html><html lang="en"><meta charset="utf-8"><title>x</title><style>{CSS}'
     body = f"</style><main><h1>One</h1>{words}<table>{ROWS}</table></main>"
-    page.write_text(head + body)
-    assert not [
-        x for x in violations_in(visit(page.as_uri()).page, "light", "dark") if "color" in x
-    ]
-    page.write_text(head + rule + body)
-    found = violations_in(visit(page.as_uri()).page, "light", "dark")
-    assert any("color-contrast-enhanced (" in fault for fault in found)
+    found = []
+    for style in ("", rule):
+        page.write_text(head + style + body)
+        faults = violations_in(visit(page.as_uri()).page, "light", "dark")
+        found.append(any("color-contrast" in fault for fault in faults))
+    assert found == [False, True]
