@@ -59,7 +59,10 @@ def test_mouse_and_keys_change_the_picture(name, site, visit):
     """For a reader who wants no motion: before a hand moves something, nothing moves."""
     opened = visit(f"{site}/{name}.html", reduced_motion="reduce")
     found = all_handles(opened)
-    assert in_view_together(opened.page)
+    for width, height in ((390, 844), (1280, 800)):
+        opened.page.set_viewport_size({"width": width, "height": height})
+        chromium.settle(opened.page)
+        assert in_view_together(opened.page)
     stands_still(opened, found)
     for handle in found:
         before = handle.picture()
