@@ -189,6 +189,13 @@ def like(name: str, value, kind: str) -> None:
         raise TypeError(f"{name} must be {what}, got {told(value)}")
 
 
+def instance(name: str, value, *kinds: type) -> None:
+    """Refuse what is of none of these classes."""
+    if not isinstance(value, kinds):
+        names = " or ".join(kind.__name__ for kind in kinds)
+        raise TypeError(f"{name} must be of class {names}, got {told(value)}")
+
+
 def function_of(name: str, value, signature: str) -> None:
     """Refuse what cannot be called; `signature` says how it will be."""
     if not callable(value):
