@@ -66,6 +66,6 @@ def test_what_makes_a_training_short_are_settings_of_the_lesson():
         assert {n.id for n in ast.walk(ast.parse(line)) if isinstance(n, ast.Name)} <= known, name
 
 
-def test_each_lesson_is_run_with_three_other_settings():
-    assert {f"book/{name}" for name in CHANGES} == set(WALK)
+def test_a_lesson_that_is_run_with_other_settings_has_three():
+    assert {f"book/{name}" for name in CHANGES} <= set(WALK)
     assert all(len(changes) >= 3 for changes in CHANGES.values())
