@@ -16,7 +16,6 @@ from ddlib.tables import quote, scientific, significant, spread
 from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.chapters.widgets.weight import OneWeight as OneWeight
 from workshop.report import committed, results
-from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, median
 from workshop.report.parity import CODINGS, parity, parity_cases, patterns, right
 
@@ -196,13 +195,6 @@ def _quoted() -> None:
     quote("backpropagation-needed-without", plain)
     quote("backpropagation-needed-with", quick)
     quote("backpropagation-parity-race", np.median(kept["without"]) / np.median(kept["with"]))
-
-
-def _said() -> None:
-    """What the lesson says of networks in words."""
-    plain, *_, quick = (np.median(run.training[-1]) for run in _raced().values())
-    epochs = map(resampled, _needed())
-    stated("backpropagation-faster", (plain > 3 * quick) & (next(epochs) > 2 * next(epochs)))
 
 
 def _exercise(number: int, *given) -> Exercise:

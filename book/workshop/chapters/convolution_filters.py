@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ddlib._check import finite_array, shaped
-from ddlib.analysis import DERIVATIVES, classify, decompose, purest, roughness, shares, upright
+from ddlib.analysis import DERIVATIVES, classify, purest, roughness, shares, upright
 from ddlib.figures.style import (
     COLOURS,
     DASHES,
@@ -31,7 +31,6 @@ from workshop.chapters.widgets import builder
 from workshop.chapters.widgets.builder import FilterBuilder as FilterBuilder
 from workshop.chapters.widgets.fold import FilterFold as FilterFold
 from workshop.report import results
-from workshop.report.evidence.statements import resampled, stated
 from workshop.report.measures import filter_trial as trial
 
 
@@ -128,35 +127,6 @@ def _quoted() -> None:
         quote(f"filters-{name}", 100 * share)
     constant = shares(results.networks(21).weights.hidden_weights)[..., 0]
     quote("filters-constant", 100 * float(np.median(constant)))
-
-
-def _said() -> None:
-    """What the lesson says in words about committed results."""
-    study = results.read("targets")
-    unnamed = {
-        size: resampled(names["not analysable"], np.mean)
-        for size, names in zip(study["initial"], study["by initial"]["real torques"])
-    }
-    stated("filters-start-hides", (unnamed[0.03] < 0.5) & (unnamed[0.3] > 0.5))
-    stated("filters-own-difference", builder.score(builder.starts()["Second difference"]) > 0.9)
-    time = LOG_STEP * (np.arange(21) - 10)
-    answers = {}  # of constant, even and odd part to a speed and to an acceleration
-    for label, f in puzzles().items():
-        parts = decompose(f)
-        taken = np.stack([np.broadcast_to(parts.constant, f.shape), parts.even, parts.odd])
-        answers[label] = np.abs(taken @ np.stack([time, time**2 / 2], -1))
-    mixed, speed, bend = (answers[label] for label in "ABC")
-    stated("filters-odd-to-speed", all(max(each[:2, 0]) < 1e-9 for each in answers.values()))
-    stated("filters-even-to-bend", mixed[1, 1] > 5 * max(mixed[[0, 2], 1]))
-    kinds = speed[2, 0] > 10 * bend[2, 0], bend[1, 1] > 10 * speed[1, 1]
-    stated("filters-one-each", all(kinds))
-    odd = {k: (decompose(f).odd ** 2).sum() / (f**2).sum() for k, f in reported().items()}
-    lies = odd["Figure 5-4"] > 0.8, odd["Figure 5-5"] < 0.2, 0.3 < odd["Figure 5-6"] < 0.7
-    stated("filters-report-lies", all(lies))
-    stated("filters-carried-double", str(classify(carried())) == "velocity + acceleration")
-    rough = {k: roughness(f) for k, f in reported().items()}
-    small = max(rough[f"Figure 5-{k}"] for k in (4, 5, 6))
-    stated("filters-report-rough", min(rough["Figure 5-7"], rough["Figure 5-8"]) > 2 * small)
 
 
 def _exercise(number: int, given, step: float = 0.0) -> Exercise:

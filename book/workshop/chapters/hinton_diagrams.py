@@ -11,7 +11,7 @@ from matplotlib.gridspec import GridSpec, GridSpecFromSubplotSpec
 from scipy.optimize import linprog
 
 from ddlib import figures, paper
-from ddlib.analysis import classify, mean_gradient, roughness
+from ddlib.analysis import mean_gradient, roughness
 from ddlib.figures.weights import hinton_on
 from ddlib.learning import INITIAL, TrainingSet, Weights, cases, train_ensemble
 from ddlib.setups import JOINT_DAMPING, SETUPS, STATE_FEEDBACK, WINDOWS, split
@@ -20,7 +20,6 @@ from ddlib.tables import Table, quote, scientific, significant
 from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.chapters.index import both
 from workshop.report import committed, results
-from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured
 
 
@@ -135,42 +134,6 @@ def _quoted() -> None:
     for joint, dot, gain in zip(figures.JOINTS, _dots().T, JOINT_DAMPING.controller.kp):
         quote(f"hinton-dot-{joint}", -np.median(dot))
         quote(f"hinton-gain-{joint}", gain)
-
-
-def _said() -> None:
-    """What the lesson says of smooth and rough parts, in eight networks of each start."""
-    smooth, named = [], {}
-    for initial in (INITIAL, 10 * INITIAL):
-        start, trained = _trained(8, initial)
-        before, after = map(_rows, (start, trained))
-        added = roughness(after - before)
-        smooth.append(resampled(np.median(added, (1, 2))) < 0.05)
-        share = (classify(trained.hidden_weights) != "not analysable").mean((1, 2))
-        named[initial] = resampled(share, np.mean)
-        if initial == INITIAL:
-            stated("hinton-every-row", resampled((added < 0.2).mean((1, 2)), np.mean) > 0.9)
-            rough = roughness(after)[:, 2:] > 0.3
-            stated("hinton-look-rough", resampled(rough.mean((1, 2)), np.mean) > 0.15)
-        else:
-            second = [np.diff(x, 2).reshape(8, -1) for x in (before, after)]
-            like = resampled([np.corrcoef(*x)[0, 1] for x in zip(*second)])
-            stated("hinton-rough-start", like > 0.9)
-    stated("hinton-added-smooth", np.all(smooth, 0))
-    small, large = named.values()
-    stated("hinton-small-shows", (small > 0.5) & (large < 0.5))
-    falls = []
-    for each in _largest().values():
-        size = [resampled(each[w]) for w in WINDOWS]
-        falls.append((size[0] > size[1]) & (size[1] > size[2]))
-    stated("hinton-falls", np.all(falls, 0))
-    gains = JOINT_DAMPING.controller.kp
-    near = [np.abs(resampled(-dot / gain) - 1) < 0.1 for dot, gain in zip(_dots().T, gains)]
-    stated("hinton-dot", np.all(near, 0))
-
-
-def _rows(weights: Weights) -> np.ndarray:
-    """All rows of networks, those of the outputs first: (network, unit, joint, sample)."""
-    return np.concatenate([weights.direct_weights, weights.hidden_weights], 1)
 
 
 def _exercise(number: int, given) -> Exercise:

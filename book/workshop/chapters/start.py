@@ -23,7 +23,6 @@ from ddlib.setups import (
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, quote, significant
 from workshop.report import results
-from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, mean, median
 from workshop.report.studies.nulls import TRIAL
 from workshop.report.studies.start import RANGES, SOLVED, agreement, chosen
@@ -436,43 +435,3 @@ def _quoted() -> None:
     null = np.concatenate([*inertia["shifted"], *inertia["phases"]])
     quote("start-inertia-null", float(np.median(null)))
     quote("start-inertia-arm", results.read("excitation")["cells"][0]["arm"])
-
-
-def _said() -> None:
-    """What the page says in words, by the names that `bound_words.yml` gives it."""
-    best, scores = chosen(cells())
-    stated("start-is-the-books", best == INITIAL)
-    stated("start-old-worse", scores[0.3] < scores[best] - 1)
-    never = [agreement(cells()[r][str(s)])["saturated at 21"] < 0.5 for r in SETUPS for s in RANGES]
-    stated("start-never-saturated", all(never))
-    alone = [agreement(cells()[r]["0.03"])["largest weights"] for r in SETUPS]
-    stated(
-        "start-largest-alone",
-        [share > 0.5 for share in alone] == [r == STATE_FEEDBACK.name for r in SETUPS],
-    )
-    stated("start-names", more_names().replicates > 0)
-    stated("start-turns", turned().replicates > 0)
-    turns = [
-        [resampled(values(r, s, 21, "turn"), seed=k) for k, s in enumerate((1.0, 0.3, INITIAL))]
-        for r in SETUPS
-    ]
-    stated("start-between", np.all([(a < b) & (b < c) for a, b, c in turns], 0))
-    stated("start-kernel", kernel_moved().replicates < 0)
-    rough = [
-        resampled(values(r, 0.3, 21, "hidden", "roughness"))
-        > resampled(values(r, INITIAL, 21, "hidden", "roughness"), seed=1)
-        for r in SETUPS
-    ]
-    stated("start-rougher", np.all(rough, 0))
-    waits = {
-        r: resampled(values(r, INITIAL, 21, "until half"))
-        / resampled(values(r, 0.3, 21, "until half"), seed=1)
-        for r in SETUPS
-    }
-    stated("start-waits", waits.pop(STATE_FEEDBACK.name) > 1.2)
-    stated("start-waits-no-longer", np.all([longer < 1.2 for longer in waits.values()], 0))
-    this, other = results.read("excitation")["cells"][0]["arm"], other_inertia()
-    number = {name: resampled(inertia) for name, (_, inertia) in other_torques().items()}
-    stated("start-number-this", np.abs(number["own"] - this) < np.abs(number["own"] - other))
-    number = number["another arm"]
-    stated("start-number-other", np.abs(number - other) < np.abs(number - this))

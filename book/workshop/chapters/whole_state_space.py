@@ -19,7 +19,6 @@ from ddlib.tables import Table, quote, significant, spread
 from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.report import results
 from workshop.report.evidence import claims
-from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, mean, median
 from workshop.report.exact_states import random_states, states_along, torque
 
@@ -187,23 +186,6 @@ def _watched() -> np.ndarray:
     shares = input_shares(_networks().weights)
     largest = shares.reshape(*shares.shape[:2], 6).argmax(-1)
     return np.stack([(largest == k).mean(1) for k in (3, 1)])
-
-
-def _said() -> None:
-    """What the lesson says of the book's networks in words."""
-    a, _, six = _errors().values()
-    miss = [
-        np.sqrt(((_networks().torque(s) - torque(s)) ** 2).mean(1))
-        for s in (_states(), random_states(seed=1))
-    ]
-    stated("states-easier-place", [resampled(r) < 0.8 for r in (miss[0] / miss[1]).T])
-    stated("states-six-worse", resampled(six / a) > 2)
-    size = np.median(np.abs(_networks().weights.hidden_weights), 1).reshape(-1, 6)
-    small, big = (resampled(size[:, k]) for k in (0, 3))
-    rest = [resampled(size[:, k]) for k in (1, 2, 4, 5)]
-    ends = (small < np.min(rest, 0)) & (big > np.max(rest, 0))
-    stated("states-smallest-and-largest", ends)
-    stated("states-elbow-watched", resampled(_watched()[0], np.mean) > 0.55)
 
 
 def _exercise(number: int, *given) -> Exercise:
