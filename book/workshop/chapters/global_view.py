@@ -162,6 +162,9 @@ def _quoted() -> None:
     for w in (11, 21):
         often = filter_trial.row(w)["real"]["saturated"]
         quote(f"global-trial-saturated-{w}", 100 * np.median(often))
+    unrelated = filter_trial.matched(filter_trial.row(11)).values()
+    least = min(np.median(torques["saturated"]) for torques in unrelated)
+    quote("global-trial-unrelated", 100 * least)
     for key in ("real", "untrained"):
         quote(f"global-cancel-{key}", 100 * np.median(row[key]["cancelled"]))
         quote(f"global-read-{key}", np.median(np.array(row[key]["probe"])[:, [0, 2]]))

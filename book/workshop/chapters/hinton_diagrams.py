@@ -19,17 +19,9 @@ from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, quote, scientific, significant
 from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.chapters.index import both
+from workshop.chapters.start import named
 from workshop.report import committed, results
 from workshop.report.evidence.verdicts import Measured
-
-
-def _trained(members: int, initial: float = INITIAL) -> tuple[Weights, Weights]:
-    """Random starts of a size, and what training as in the lesson makes of them."""
-    data = TrainingSet.from_recording(JOINT_DAMPING.record()[:5], 21)
-    how = {"momentum": 0.98, "warm_up": 500, "epochs": 4000, "progress": False}
-    start = Weights.random(members, 21, initial=initial)
-    return start, train_ensemble(start, data, **how)[0].weights
-
 
 NOTE = (
     "Press a row, or move to the diagram and use the arrow keys. Each grey blob is a unit: the two "
@@ -42,8 +34,10 @@ NOTE = (
 
 def before_and_after() -> tuple[Weights, Weights]:
     """The network that the lesson trains with *Change this* as it is: its start, and trained."""
-    start, trained = _trained(1)
-    return start[0], trained[0]
+    data = TrainingSet.from_recording(JOINT_DAMPING.record()[:5], 21)
+    how = {"momentum": 0.98, "warm_up": 500, "epochs": 4000, "progress": False}
+    start = Weights.random(1, 21, initial=INITIAL)
+    return start[0], train_ensemble(start, data, **how)[0].weights[0]
 
 
 def printed_windows() -> figures.Illustration:
@@ -70,15 +64,13 @@ def printed_windows() -> figures.Illustration:
     return figures.illustrate(draw, alt, 7.0, 8.6)
 
 
-def _largest() -> dict[str, dict[int, np.ndarray]]:
-    """Largest weights of 25 networks, by reading and window."""
-    cells = results.read("table-4-1")["setups"]
-    return {s: {w: np.array(cells[s][str(w)]["largest weight"]) for w in WINDOWS} for s in SETUPS}
-
-
 def largest_weights() -> Table:
     """Largest weights, printed and ours: medians of 25 networks for each reading."""
-    ours = {s: {w: np.median(x) for w, x in each.items()} for s, each in _largest().items()}
+    cells = results.read("table-4-1")["setups"]
+    ours = {
+        name: {w: np.median(cells[name][str(w)]["largest weight"]) for w in WINDOWS}
+        for name in SETUPS
+    }
     rows = [
         (w, f"{paper.LARGEST_WEIGHT[w]:g}", *(significant(each[w]) for each in ours.values()))
         for w in WINDOWS
@@ -134,6 +126,8 @@ def _quoted() -> None:
     for joint, dot, gain in zip(figures.JOINTS, _dots().T, JOINT_DAMPING.controller.kp):
         quote(f"hinton-dot-{joint}", -np.median(dot))
         quote(f"hinton-gain-{joint}", gain)
+    for name, size in (("small", INITIAL), ("large", 10 * INITIAL)):
+        quote(f"hinton-named-{name}", 100 * named(JOINT_DAMPING.name, size).mean())
 
 
 def _exercise(number: int, given) -> Exercise:

@@ -25,7 +25,7 @@ from ddlib.tables import Table, quote, significant
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured, judged, mean, median
 from workshop.report.studies.nulls import TRIAL
-from workshop.report.studies.start import RANGES, SOLVED, agreement, chosen
+from workshop.report.studies.random_starts import RANGES, SOLVED, agreement, chosen
 
 PRINTED = "0 to 1"
 """Range of the inputs that the report prints."""

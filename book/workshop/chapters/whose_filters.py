@@ -31,7 +31,7 @@ from workshop.chapters.widgets.whose import GuessRound, WhoseFilters as WhoseFil
 from workshop.report import results
 from workshop.report.measures import filter_trial as trial
 from workshop.report.studies.nulls import TRIAL
-from workshop.report.studies.start import RANGES
+from workshop.report.studies.random_starts import RANGES
 
 _WIDTH = 21
 

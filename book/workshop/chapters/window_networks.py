@@ -258,7 +258,9 @@ def _quoted() -> None:
     )
     quote("window-live-first", how_many(int((direct < error).sum()), live["members"]))
     quote("window-live-level", live["level"])
-    quote("window-live-shifted", np.median(live["rows"]["as printed, shifted"]["test"]))
+    shifted = live["rows"]["as printed, shifted"]
+    quote("window-live-shifted", np.median(shifted["test"]))
+    quote("window-live-named", 100 * np.mean(shifted["named"]))
     bends, torque = _bends()
     quote("window-bend-sign", 100 * (np.sign(bends) == np.sign(torque)).mean())
     quote("window-steps", JOINT_DAMPING.steps)
