@@ -182,19 +182,22 @@ def race() -> Illustration:
 
 def _needed() -> tuple[np.ndarray, ...]:
     """Epochs to `_LEVEL` of the networks that learn as in 1988, without and with momentum."""
-    kept = map(results.read("acceleration")["race"].get, ("without", "with"))
-    runs = [History(np.array(run["epochs"]), np.array(run["training"])) for run in kept]
+    races = map(results.read("acceleration")["race"].get, ("without", "with"))
+    runs = [History(np.array(run["epochs"]), np.array(run["training"])) for run in races]
     return tuple(np.minimum(_reach(run), run.epochs[-1]) for run in runs)
 
 
 def _quoted() -> None:
     """The book's numbers in the lesson's prose."""
     plain, quick = map(np.median, _needed())
-    kept = results.read("acceleration")["parity"]
+    on_parity = results.read("acceleration")["parity"]
     quote("backpropagation-weights", Weights.random(1, 21)[0].count(biases=True))
     quote("backpropagation-needed-without", plain)
     quote("backpropagation-needed-with", quick)
-    quote("backpropagation-parity-race", np.median(kept["without"]) / np.median(kept["with"]))
+    quote(
+        "backpropagation-parity-race",
+        np.median(on_parity["without"]) / np.median(on_parity["with"]),
+    )
 
 
 def _exercise(number: int, *given) -> Exercise:

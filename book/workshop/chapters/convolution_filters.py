@@ -82,8 +82,8 @@ def said_and_seen() -> Table:
     """What the report says of its Figures 5-4 to 5-8, and what the rows of `reported` hold."""
     rows = []
     for figure, f in reported().items():
-        each = zip((*DERIVATIVES, "rest"), shares(f))
-        cell = ", ".join(f"{name} {100 * share:.0f}" for name, share in each if share > 0.05)
+        energy = zip((*DERIVATIVES, "rest"), shares(f))
+        cell = ", ".join(f"{name} {100 * share:.0f}" for name, share in energy if share > 0.05)
         rows.append((figure, _REPORT[figure][2], cell, str(classify(f))))
     heads = "figure", "what the report says", "what we see, % of the energy", "name by the rule"
     return Table(heads, rows)

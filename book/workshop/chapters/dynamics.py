@@ -149,7 +149,7 @@ def operations(
 
 
 def estimates(
-    found: Mapping[str, Estimate], truth, names: Sequence[str], limit: float
+    by_method: Mapping[str, Estimate], truth, names: Sequence[str], limit: float
 ) -> Illustration:
     """Estimated parameters and their stated confidence, as errors in percent.
 
@@ -158,8 +158,8 @@ def estimates(
     the interval held the truth. What lies beyond the axis is marked by an arrow.
     """
     number("limit", limit, 0.0, open_low=True)
-    rows = list(found.items())
-    shown = {name: [_summary(e, truth, name) for e in found.values()] for name in names}
+    rows = list(by_method.items())
+    shown = {name: [_summary(e, truth, name) for e in by_method.values()] for name in names}
 
     def draw(figure: Figure):
         axes = figure.subplots(1, len(names), sharey=True, squeeze=False)[0]

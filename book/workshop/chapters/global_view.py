@@ -54,8 +54,8 @@ def spare_units(width: int, worse: float = 1.1) -> Measured:
     def spare_of(models):
         every = models(width)
         members = [every[k] for k in range(len(every.weights))]
-        without = [ablation(one, windows, torque)[1] for one in members]
-        whole = [rmss(one.torque(windows), torque) for one in members]
+        without = [ablation(member, windows, torque)[1] for member in members]
+        whole = [rmss(member.torque(windows), torque) for member in members]
         return (np.array(without) < worse * np.array(whole)[:, None]).sum(1)
 
     spare, before = committed.both(spare_of)

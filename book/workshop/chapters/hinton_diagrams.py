@@ -72,12 +72,12 @@ def largest_weights() -> Table:
         for name in SETUPS
     }
     rows = [
-        (w, f"{paper.LARGEST_WEIGHT[w]:g}", *(significant(each[w]) for each in ours.values()))
+        (w, f"{paper.LARGEST_WEIGHT[w]:g}", *(significant(sizes[w]) for sizes in ours.values()))
         for w in WINDOWS
     ]
     off = {
-        s: max(np.exp(abs(np.log(each[w] / paper.LARGEST_WEIGHT[w]))) for w in WINDOWS)
-        for s, each in ours.items()
+        s: max(np.exp(abs(np.log(sizes[w] / paper.LARGEST_WEIGHT[w]))) for w in WINDOWS)
+        for s, sizes in ours.items()
     }
     last = "worst of the three, off by a factor of"
     rows.append((last, "", *(significant(x, 2) for x in off.values())))
@@ -110,8 +110,8 @@ def notch() -> figures.Illustration:
     def draw(figure):
         axes = figure.subplots(1, 2)
         for joint, axis in enumerate(axes):
-            for one in _gradients()[:, joint]:
-                axis.plot(time, one, color=figures.COLOURS[0], lw=0.6, alpha=0.5)
+            for gradient in _gradients()[:, joint]:
+                axis.plot(time, gradient, color=figures.COLOURS[0], lw=0.6, alpha=0.5)
             median = np.median(_gradients()[:, joint], 0)
             axis.plot(time[19:22], median[19:22], "o-", color=figures.COLOURS[1], ms=5, lw=1.5)
             axis.set(title=figures.JOINTS[joint], xlabel="time from the window's centre, ms")

@@ -86,25 +86,25 @@ def _carried() -> int:
 
 def paths_beside() -> Illustration:
     """Inertia and damping of each path of the landing page's network, and their sum."""
-    each, carried = paths(), _carried()
-    names = ["direct", *(f"unit {k}" for k in range(1, len(each))), "all"]
+    by_path, carried = paths(), _carried()
+    names = ["direct", *(f"unit {k}" for k in range(1, len(by_path))), "all"]
     names[carried] += ", the row"
-    colours = [COLOURS[1] if k == carried else COLOURS[0] for k in range(len(each))]
+    colours = [COLOURS[1] if k == carried else COLOURS[0] for k in range(len(by_path))]
     friction = JOINT_DAMPING.effects.friction[0].coefficient[0]
     panels = {"inertia, kg m²": (2, _arm()), "damping, N m s/rad": (1, friction)}
 
     def draw(figure: Figure):
         for axis, (label, (k, arm)) in zip(figure.subplots(1, 2, sharey=True), panels.items()):
-            axis.barh(names[:-1], each[:, k], color=colours)
-            axis.barh(names[-1:], each[:, k].sum(), color=INK)
-            axis.plot([arm] * 2, [len(each) - 0.6, len(each) + 0.6], color=COLOURS[2], lw=3)
+            axis.barh(names[:-1], by_path[:, k], color=colours)
+            axis.barh(names[-1:], by_path[:, k].sum(), color=INK)
+            axis.plot([arm] * 2, [len(by_path) - 0.6, len(by_path) + 0.6], color=COLOURS[2], lw=3)
             axis.axvline(0, color=INK, lw=0.8)
             axis.grid(visible=False, axis="y")
             axis.set(xlabel=label, ylim=(len(names) - 0.4, -0.6))
 
     alt = (
-        f"Bars for {len(each)} paths, of both signs, and for their sum: inertia "
-        f"{each[:, 2].sum():.1f} kg m², damping {each[:, 1].sum():.0f} N m s/rad."
+        f"Bars for {len(by_path)} paths, of both signs, and for their sum: inertia "
+        f"{by_path[:, 2].sum():.1f} kg m², damping {by_path[:, 1].sum():.0f} N m s/rad."
     )
     return illustrate(draw, alt, 7.0, 3.2, narrow_height=6.0)
 

@@ -43,10 +43,10 @@ def cells(method: str = "descent", scaling: str = PRINTED) -> dict:
 
 def values(reading: str, size: float, width: int, *path: str, **where) -> np.ndarray:
     """What a cell keeps of its networks, shape (networks,)."""
-    kept = cells(**where)[reading][str(size)][str(width)]
+    cell = cells(**where)[reading][str(size)][str(width)]
     for name in path:
-        kept = kept[name]
-    return np.array(kept, float)
+        cell = cell[name]
+    return np.array(cell, float)
 
 
 def named(reading: str, size: float, width: int = 21, layer: str = "hidden", **where):
@@ -135,8 +135,8 @@ def by_range() -> figures.Illustration:
         axes = figure.subplots(1, len(_PANELS))
         for axis, (title, measure) in zip(axes, _PANELS.items()):
             for k, reading in enumerate(SETUPS):
-                each = [np.quantile(measure(reading, s), (0.25, 0.5, 0.75)) for s in RANGES]
-                low, middle, high = np.transpose(each)
+                quartiles = [np.quantile(measure(reading, s), (0.25, 0.5, 0.75)) for s in RANGES]
+                low, middle, high = np.transpose(quartiles)
                 look = {"color": figures.COLOURS[k], "label": reading, "marker": "o", "ms": 3}
                 axis.fill_between(RANGES, low, high, color=look["color"], alpha=0.15, lw=0)
                 axis.plot(RANGES, middle, ls=figures.DASHES[k], **look)
@@ -234,8 +234,8 @@ def beside_unrelated() -> figures.Illustration:
     medians = []
     for reading in SETUPS:
         for size in sizes:
-            found = shares_beside(reading, size, "acceleration")
-            each = ", ".join(f"{_KINDS[k]} {100 * np.median(x):.0f} %" for k, x in found.items())
+            shares = shares_beside(reading, size, "acceleration")
+            each = ", ".join(f"{_KINDS[k]} {100 * np.median(x):.0f} %" for k, x in shares.items())
             medians.append(f"{reading}, ±{size:g}: {each}")
     alt = (
         "Shares of hidden filters named acceleration and velocity at window 21, medians and the "
@@ -310,13 +310,13 @@ def errors_table() -> Table:
     rows = []
     for reading in SETUPS:
         for size in RANGES:
-            each = [
+            medians = [
                 f"{np.median(values(reading, size, w, 'training')):.3f} / "
                 f"{np.median(values(reading, size, w, 'test')):.3f}"
                 for w in WINDOWS
             ]
             wait = np.median(values(reading, size, 21, "until half"))
-            rows.append((reading, f"±{size:g}", *each, f"{wait:,.0f}"))
+            rows.append((reading, f"±{size:g}", *medians, f"{wait:,.0f}"))
     heads = (f"window {w}, training / test" for w in WINDOWS)
     return Table(("reading", "start", *heads, "epochs until 0.5"), rows)
 
@@ -402,7 +402,7 @@ def velocity_beyond_unrelated() -> Measured:
 
 
 def _by_reading(texts) -> str:
-    return "; ".join(f"{reading} {one}" for reading, one in zip(SETUPS, texts))
+    return "; ".join(f"{reading} {text}" for reading, text in zip(SETUPS, texts))
 
 
 def _quoted() -> None:

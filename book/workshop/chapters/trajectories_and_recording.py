@@ -138,12 +138,12 @@ def tied(panels: Mapping[str, Mapping[str, np.ndarray]]) -> Illustration:
         handles, labels = axes[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside upper left", ncols=3, markerscale=3)
 
-    def told(points):
+    def correlation(points):
         q, qdd = points[..., 0].ravel(), points[..., 1].ravel()
         return f"correlation {np.corrcoef(q, qdd)[0, 1]:.2f}"
 
     parts = [
-        f"{title}: " + ", ".join(f"{name}, {told(points)}" for name, points in named.items())
+        f"{title}: " + ", ".join(f"{name}, {correlation(points)}" for name, points in named.items())
         for title, named in checked.items()
     ]
     alt = f"Acceleration against position. {'; '.join(parts)}."
@@ -179,10 +179,17 @@ def _quoted() -> None:
 def _exercise(number: int, motion=None) -> Exercise:
     """An exercise of the lesson."""
 
-    def told(share):
-        q, qd, qdd = (x[0, :, 0] for x in motion([[45.0, 45.0]], share))
+    def states(share):
+        return (x[0, :, 0] for x in motion([[45.0, 45.0]], share))
+
+    def speed(share):
+        _, qd, _ = states(share)
+        return np.abs(qd).max()
+
+    def explained(share):
+        q, qd, qdd = states(share)
         moving = qd != 0
-        return np.corrcoef(q[moving], qdd[moving])[0, 1] ** 2, np.abs(qd).max()
+        return np.corrcoef(q[moving], qdd[moving])[0, 1] ** 2
 
     if number == 1:
         slip = (
@@ -200,9 +207,10 @@ def _exercise(number: int, motion=None) -> Exercise:
             "number", outside, "the test lies outside more often than not.", (), hint, tolerance=0.1
         )
     else:
-        known, fastest = told, 1.2 * told(0.0)[1] * (1 + 1e-9)  # 20 % is still right
-        slow = fitting(lambda x: known(x)[1] <= fastest, shares := np.arange(-500, 501) / 500)
-        right = fitting(lambda x: known(x)[0] < 0.1 and known(x)[1] <= fastest, shares)
+        fastest = 1.2 * speed(0.0) * (1 + 1e-9)  # 20 % is still right
+        shares = np.arange(-500, 501) / 500
+        slow = fitting(lambda x: speed(x) <= fastest, shares)
+        right = fitting(lambda x: explained(x) < 0.1 and speed(x) <= fastest, shares)
         slips = [
             (slow, "you could still predict too much of the acceleration from the position."),
             (Between(-np.inf), "the arm would have to move too fast."),

@@ -72,7 +72,7 @@ def acceleration_by_window() -> CurveWidget:
         errors[bits] = np.sqrt(np.mean(np.square(misses), 1) / truth.var())
     time, most = run.t[run.motion], 2.0 * np.abs(truth).max()
 
-    def told(width, bits):
+    def curves(width, bits):
         k = int(np.flatnonzero(sizes == width)[0])
         estimate = np.clip(estimates[bits, width], -most, most)
         error = {"errors": errors[bits], "error": errors[bits][k], "at": float(width)}
@@ -80,7 +80,7 @@ def acceleration_by_window() -> CurveWidget:
 
     label = "error / deviation of the acceleration"
     return CurveWidget(
-        told,
+        curves,
         [
             Choice("width", "Window", {int(w): f"{w} samples" for w in sizes}, 5, "slider"),
             Choice("bits", "Encoder", encoders, 12.5),
