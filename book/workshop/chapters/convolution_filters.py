@@ -9,7 +9,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ddlib._check import finite_array, shaped
 from ddlib.analysis import DERIVATIVES, classify, purest, roughness, shares, upright
 from ddlib.figures.style import (
     COLOURS,
@@ -108,7 +107,7 @@ def puzzles() -> dict[str, np.ndarray]:
     return rows
 
 
-def _named(name: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+def named_in_trial(name: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Share of a name in the hidden filters of the trial: the arm's torques, and each null."""
     row = trial.row(21)
     nulls = {k: trial.share(x, "hidden", [name]) for k, x in trial.matched(row).items()}
@@ -122,7 +121,7 @@ def _quoted() -> None:
     for width in (5, 11, 21):
         quote(f"filters-own-{width}", builder.score(builder.starts()[f"Savitzky–Golay, {width}"]))
     for name in ("velocity", "acceleration"):
-        quote(f"filters-{name}", 100 * _named(name)[0].mean())
+        quote(f"filters-{name}", 100 * named_in_trial(name)[0].mean())
     for name, share in zip(("carried", "carried-bend"), shares(carried())[1:3]):
         quote(f"filters-{name}", 100 * share)
     constant = shares(results.networks(21).weights.hidden_weights)[..., 0]
@@ -201,14 +200,6 @@ def against_nulls(
     panels: Mapping[str, Mapping[str, Mapping[str, np.ndarray]]], label: str, alt: str
 ) -> Illustration:
     """Shares of filters under the real torques, as bars, and under nulls, a dot for each draw."""
-    if not panels:
-        raise ValueError("panels must hold one panel or more, got none")
-    for groups in panels.values():
-        for name, sets in groups.items():
-            for values in sets.values():
-                shape = finite_array(f"values of {name!r}", values).shape
-                if len(shape) != 1:
-                    raise ValueError(f"values of {name!r} must have shape (draws,), got {shape}")
     classes = list(next(iter(panels.values())))
     rows = -(-len(panels) // 3)
 
@@ -261,9 +252,6 @@ def by_explained(
     values and their mean are shown, of the others the means. Of each mixture in `courses` means,
     and the range of nine tenths of the networks, are shown at equal steps.
     """
-    for name, sets in [*rows.items(), *courses.items()]:
-        for what, values in sets.items():
-            shaped(f"{what!r} of {name!r}", values, "(networks,)")
 
     def draw(figure: Figure):
         left, right = figure.subplots(1, 2)

@@ -17,7 +17,6 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy.optimize import brentq
 
-from ddlib._check import finite_array
 from ddlib.analysis import savitzky_golay
 from ddlib.control import difference, end_slope, late_poles, linear, noise_gain, pd
 from ddlib.control.velocity import EstimatedVelocity
@@ -77,9 +76,6 @@ def side_by_side(
 
 def ranking(sizes: Mapping[str, np.ndarray]) -> Illustration:
     """Torques as bars on a logarithmic axis, largest first, one bar for each joint."""
-    for name, size in sizes.items():
-        if (finite_array(f"sizes[{name!r}]", size, 2) <= 0).any():
-            raise ValueError(f"sizes must be positive, got {size} for {name!r}")
     order = sorted(sizes, key=lambda name: sizes[name][0], reverse=True)
     values = np.array([sizes[name] for name in order])
     places = np.arange(len(order))

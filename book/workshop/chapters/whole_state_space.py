@@ -9,7 +9,6 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from ddlib import paper
-from ddlib._check import shaped
 from ddlib.analysis import input_shares, shuffled, transition_range
 from ddlib.figures.style import COLOURS, INK, JOINTS, Illustration, illustrate
 from ddlib.figures.weights import dots, largest_weight
@@ -35,11 +34,6 @@ def hinton_states(weights: Weights) -> Illustration:
     of a hidden unit, and the middle row of an output unit, are the weights between them. A row of
     more than ten is squeezed.
     """
-    if weights.hidden_bias.ndim != 1 or weights.hidden_weights.shape[-2:] != (2, 3):
-        raise ValueError(
-            "weights must be of one network of two joints and three numbers each, "
-            f"got hidden weights of shape {weights.hidden_weights.shape}"
-        )
     largest = largest_weight(weights)
     hidden, outputs = len(weights.hidden_bias), len(weights.output_bias)
     rows = -(-hidden // 2)
@@ -92,9 +86,6 @@ def _torque_along(t, exact, predicted) -> Illustration:
     standard deviation, is the median; the shade holds the middle 80 % of all networks at each
     time.
     """
-    t = shaped("t", t, "(time,)")
-    exact = shaped("exact", exact, f"({t.size}, joint)")
-    predicted = shaped("predicted", predicted, f"(networks, {t.size}, {exact.shape[1]})")
     square = ((predicted - exact) ** 2).mean(1)
     error = (square / exact.var(0)).mean(-1)
     middle = predicted[np.argsort(error)[len(error) // 2]]

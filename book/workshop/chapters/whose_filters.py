@@ -24,7 +24,7 @@ from ddlib.setups import INITIAL, JOINT_DAMPING, split, true_states
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote
 from workshop.chapters import index, start
-from workshop.chapters.convolution_filters import _dots
+from workshop.chapters.convolution_filters import _dots, named_in_trial
 from workshop.chapters.exercises import Exercise, judging
 from workshop.chapters.widgets.starts import UnitFromFiveStarts as UnitFromFiveStarts
 from workshop.chapters.widgets.whose import GuessRound, WhoseFilters as WhoseFilters
@@ -173,17 +173,10 @@ def carried_and_unrelated() -> Illustration:
     return decomposed({name: row / np.abs(row).max() for name, row in rows.items()}, LOG_STEP)
 
 
-def _named(name: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Share of a name in the hidden filters of the trial: the arm's torques, and each null."""
-    row = trial.row(_WIDTH)
-    nulls = {k: trial.share(x, "hidden", [name]) for k, x in trial.matched(row).items()}
-    return trial.share(row["real"], "hidden", [name]), nulls
-
-
 def _quoted() -> None:
     """Numbers of the lesson."""
     for name in ("velocity", "acceleration"):
-        real, nulls = _named(name)
+        real, nulls = named_in_trial(name)
         means = {kind: 100 * each.mean() for kind, each in nulls.items()}
         quote(f"whose-{name}", 100 * real.mean())
         if name == "velocity":

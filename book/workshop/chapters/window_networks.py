@@ -8,7 +8,6 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ddlib import paper
-from ddlib._check import finite_array
 from ddlib.figures.maps import SIGNS, rmss_by_window
 from ddlib.figures.style import (
     COLOURS,
@@ -364,12 +363,6 @@ def intervals(
 ) -> Illustration:
     """Panels of rows, each with a point and an interval for every series."""
     rows = list(dict.fromkeys(r for series in panels.values() for s in series.values() for r in s))
-    for series in panels.values():
-        for points in series.values():
-            for row, point in points.items():
-                low, middle, high = finite_array(row, point)
-                if not low <= middle <= high:
-                    raise ValueError(f"interval of {row!r} must be in order, got {tuple(point)}")
 
     def draw(figure: Figure):
         axes = figure.subplots(1, len(panels), sharex=True, sharey=True, squeeze=False)[0]
