@@ -26,7 +26,6 @@ from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.tables import Table, quote, significant
 from workshop.chapters.exercises import Exercise, judging
 from workshop.report import results
-from workshop.report.evidence.statements import stated
 from workshop.report.evidence.verdicts import Measured, judged
 
 _PLAIN = FuncFormatter(lambda value, place: f"{value:g}")
@@ -178,25 +177,6 @@ def _quoted() -> None:
     for effect in ("dead zone", "backlash"):
         row = {n: np.median(_finite(x)) for n, x in kept("bed", effect, "settled").items()}
         quote(f"adaptive-bed-{effect.replace(' ', '-')}", row["adapted"] / row["held"])
-
-
-def _said() -> None:
-    """What stands behind words of the prose."""
-    few, heavy, slow = (
-        [np.median(_again(seconds, s, "with friction") / _again(seconds, s, "PD"), -1)[at]
-         for s in _SETUPS.values()]
-        for seconds, at in (("0.1", 3), ("0.1", 7), ("0.2", 7))
-    )  # fmt: skip
-    stated("adaptive-few", max(*few, *slow) < 0.06)
-    stated("adaptive-heavy", min(heavy) > 2 * max(slow))
-    errors = _fair()
-    held, watched, learnt = (errors[n] for n in list(_FAIR)[3:6])
-    stated("adaptive-held-empty", held[3] < 0.6 * learnt[3])
-    stated("adaptive-wrong-empty", errors["all of them 10 % too large"][3] > 1.5 * learnt[3])
-    stated("adaptive-pays", learnt[7] < 0.3 * watched[7] and learnt[7] < 0.1 * held[7])
-    stated("adaptive-observer-at-once", watched[4] < 0.5 * learnt[4])
-    excited = {n: np.array(x, float) for n, x in kept("excitation", "settled").items()}
-    stated("adaptive-five-fell", excited["learning"][-1, 4] < excited["not learning"][-1, 4])
 
 
 def _rounded_figure() -> Illustration:

@@ -15,7 +15,6 @@ from ddlib.tables import Table, quote, significant, spread
 from ddlib.trajectories import APPENDIX_I, smooth_pick_and_place
 from workshop.chapters.exercises import Exercise, judging
 from workshop.report import results
-from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured
 
 PLAIN = "no feedforward"  # the feedback alone, as the study calls it
@@ -354,25 +353,6 @@ def _quoted() -> None:
     share = _DAMPER * (_FRICTION + _DAMPER) / (_SPRING * _INERTIA)
     quote("loop-real-share", share)
     quote("loop-real-until", 1 / np.sqrt(1 - share))
-
-
-def _said() -> None:
-    """What stands behind words of the prose."""
-
-    def over(motion, name):
-        return resampled(on(motion, name) / on(motion, PLAIN))
-
-    motions = list(part("motion")["tests"])
-    everywhere = np.max([over(m, "exact terms") for m in motions], axis=0)
-    stated("loop-exact-everywhere", everywhere < 0.5)
-    brisk = [over(m, "generic terms") for m in motions if "time" in m]
-    stated("loop-generic-faster", np.max(brisk, axis=0) < 0.5)
-    stated("loop-generic-circle", over("circle", "generic terms") > 0.75)
-    plain = family(PLAIN, _WHEN[0])
-    left = {name: resampled(family(name, _WHEN[0]) / plain) for name in _NOTHING}
-    learnt = [left[name] < 0.5 for name in ("last layer", "linear filter")]
-    slow = [left[name] > 0.5 for name in ("replay", "one pass", "by feedback")]
-    stated("loop-from-nothing", np.all(learnt + slow, axis=0))
 
 
 def _exercise(number: int, *given) -> Exercise:
