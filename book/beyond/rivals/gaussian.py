@@ -17,8 +17,8 @@ from sklearn.kernel_approximation import RBFSampler
 from sklearn.linear_model import RidgeCV
 
 from beyond.rivals.identified import Identified
-from beyond.rivals.protocol import INPUTS, Rival
-from ddlib._check import integer, one_of, positive, seed_number
+from beyond.rivals.protocol import Rival
+from ddlib._check import integer
 from ddlib.dynamics import Operations
 from ddlib.identification import FRICTION, GRAVITY, RIGID
 
@@ -38,8 +38,6 @@ class _Inputs:
         else:
             number = integer("directions", directions, 1, min(flat.shape))
             _, size, basis = np.linalg.svd(flat - self.mean, full_matrices=False)
-            if not size[number - 1] > 0:
-                raise ValueError(f"directions must be at most {(size > 0).sum()}, got {number}")
             self.matrix = basis[:number].T * (np.sqrt(len(x)) / size[:number])
         self.diagonal = directions is None
 
@@ -74,11 +72,11 @@ class GaussianProcess(Rival):
         restarts: int = 1,  # further searches, from random starts
         seed: int = 0,
     ):
-        self.kind = one_of("kind", kind, INPUTS)
+        self.kind = kind
         self.directions = directions
-        self.subset = integer("subset", subset, 2)
-        self.restarts = integer("restarts", restarts, 0)
-        self.seed = seed_number("seed", seed)
+        self.subset = subset
+        self.restarts = restarts
+        self.seed = seed
 
     def _fit(self, x, torque):
         self.inputs = _Inputs(x, self.directions)
@@ -155,10 +153,10 @@ class SemiParametric(Rival):
 
     def _fit(self, x, torque):
         self.known._fit(x, torque)
-        left = torque - self.parametric(x)
-        self.exact = bool((left.std(0) <= _TINY * torque.std(0)).all())
+        residual = torque - self.parametric(x)
+        self.exact = bool((residual.std(0) <= _TINY * torque.std(0)).all())
         if not self.exact:
-            self.rest._fit(x, left)
+            self.rest._fit(x, residual)
 
     def parametric(self, x) -> np.ndarray:
         """The part of the torque that the equations explain, ``(cases, joint)``."""
@@ -200,11 +198,8 @@ class RandomFeatures(Rival):
         lengths: Sequence[float] = (1.0, 2.0, 4.0, 8.0, 16.0),  # to try, of standardised inputs
         seed: int = 0,
     ):
-        self.kind = one_of("kind", kind, INPUTS)
-        self.features = integer("features", features, 1)
-        self.directions = directions
-        self.lengths = tuple(positive("lengths", lengths, "(lengths,)"))
-        self.seed = seed_number("seed", seed)
+        self.kind, self.features, self.directions = kind, features, directions
+        self.lengths, self.seed = lengths, seed
 
     def _fit(self, x, torque):
         self.inputs = _Inputs(x, self.directions)

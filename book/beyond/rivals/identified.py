@@ -9,8 +9,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from beyond.rivals.protocol import INPUTS, Rival, derivative_filters
-from ddlib._check import integer, number, one_of
+from beyond.rivals.protocol import Rival, derivative_filters
+from ddlib._check import number, one_of
 from ddlib.dynamics import Operations, Tape
 from ddlib.identification import FRICTION, GRAVITY, RIGID, SIGN_SPEED, from_states, least_squares
 from ddlib.learning import check_width
@@ -31,8 +31,6 @@ class Identified(Rival):
         self.names = tuple(names)
 
     def _fit(self, x, torque):
-        if x.shape[1] != 2:
-            raise ValueError(f"x must have 2 joints for {self!r}, got {x.shape[1]}")
         self.estimate = least_squares(from_states(*np.moveaxis(x, -1, 0), torque, self.names))
 
     def _torque(self, x):
@@ -92,15 +90,13 @@ class Linear(Rival):
     """
 
     def __init__(self, kind="windows", width=None, ridge=None, blocks=5):
-        self.kind = one_of("kind", kind, INPUTS)
+        self.kind = kind
         self.width = None if width is None else check_width(width)
         self.ridge = None if ridge is None else number("ridge", ridge, 0.0)
-        self.blocks = integer("blocks", blocks, 2)
+        self.blocks = blocks
 
     def _fit(self, x, torque):
         samples = x.shape[-1]
-        if self.width is not None and self.width > samples:
-            raise ValueError(f"width must be at most the window's {samples}, got {self.width}")
         cut = 0 if self.width is None else (samples - self.width) // 2
         self._used = slice(cut, samples - cut)
         x = self._rows(x)
@@ -112,13 +108,11 @@ class Linear(Rival):
         return x[..., self._used].reshape(len(x), -1)
 
     def _choose(self, x, torque) -> float:
-        if len(x) < 2 * self.blocks:
-            raise ValueError(f"data must hold {2 * self.blocks} cases or more, got {len(x)}")
         lost, scale = np.zeros(len(_RIDGES)), torque.std(0)
         for part in np.array_split(np.arange(len(x)), self.blocks):
             matrices, constants = _ridge(np.delete(x, part, 0), np.delete(torque, part, 0), _RIDGES)
-            left = (x[part] @ matrices + constants[:, None] - torque[part]) / scale
-            lost += (left**2).sum((1, 2))
+            residual = (x[part] @ matrices + constants[:, None] - torque[part]) / scale
+            lost += (residual**2).sum((1, 2))
         return _RIDGES[int(lost.argmin())]
 
     def _torque(self, x):

@@ -15,13 +15,11 @@ import torch
 from torch import nn
 from torch.nn import functional
 
-from beyond.rivals.protocol import NotFitted, Rival
-from ddlib._check import finite_array, integer, number, one_of, seed_number
+from beyond.rivals.protocol import Rival
+from ddlib._check import finite_array, integer
 from ddlib.dynamics import Operations
 from ddlib.identification import SIGN_SPEED
 
-_GRAVITIES = ("potential", "vector", "none")
-_DIAGONALS = ("softplus", "relu")
 AS_PUBLISHED = {  # options like those of the public code; there 10,000 epochs follow
     "hidden": (64, 64),
     "gravity": "potential",
@@ -148,18 +146,17 @@ class LagrangianNetwork(Rival):
         watch: Callable[[int, LagrangianNetwork], None] | None = None,  # after each epoch of Adam
     ):
         self.hidden = tuple(integer("hidden", units, 1) for units in hidden)
-        integer("hidden layers", len(self.hidden), 1)
-        self.gravity_from = one_of("gravity", gravity, _GRAVITIES)
+        self.gravity_from = gravity
         self.friction, self.annealed, self.scaled = bool(friction), bool(annealed), bool(scaled)
-        self.diagonal = one_of("diagonal", diagonal, _DIAGONALS)
-        self.floor = number("floor", floor, 0.0, open_low=True)
-        self.gain, self.bias = number("gain", gain, 0.0), number("bias", bias)
-        self.epochs = integer("epochs", epochs, 0)
-        self.batch = integer("batch", batch, 1)
-        self.rate = number("rate", rate, 0.0, open_low=True)
-        self.decay = number("decay", decay, 0.0)
-        self.finish = integer("finish", finish, 0)
-        self.seed = seed_number("seed", seed)
+        self.diagonal = diagonal
+        self.floor = floor
+        self.gain, self.bias = gain, bias
+        self.epochs = epochs
+        self.batch = batch
+        self.rate = rate
+        self.decay = decay
+        self.finish = finish
+        self.seed = seed
         self.watch = watch
 
     def _fit(self, x, torque):
@@ -248,8 +245,6 @@ class LagrangianNetwork(Rival):
 
     def _parts(self, q):
         """Triangle, its derivatives by position, gravity and potential, in scaled units."""
-        if not hasattr(self, "network"):
-            raise NotFitted(f"{self!r} has learnt nothing: call fit first")
         q = finite_array("q", q, self.network.joints)
         flat = (q.reshape(-1, q.shape[-1]) - self.units.mean) / self.units.spread
         position = torch.tensor(flat).to(self.network.places)
@@ -270,8 +265,6 @@ class LagrangianNetwork(Rival):
 
     def potential_energy(self, q) -> np.ndarray:
         """Potential that was learnt, but for a constant, shape ``(...)``, J."""
-        if self.gravity_from != "potential":
-            raise ValueError(f"gravity must be 'potential', got {self.gravity_from!r}")
         lead, (*_, potential) = self._parts(q)
         return self.units.torque * potential.reshape(lead)
 

@@ -10,8 +10,7 @@ import numpy as np
 import torch
 from torch import nn
 
-from beyond.rivals.protocol import INPUTS, Rival
-from ddlib._check import integer, number, one_of, seed_number
+from beyond.rivals.protocol import Rival
 from ddlib.dynamics import Operations
 from ddlib.learning import (
     INITIAL,
@@ -33,14 +32,12 @@ class _Network(Rival):
     def __init__(
         self, hidden=HIDDEN_UNITS, kind="windows", *, initial=INITIAL, scaling=(0.0, 1.0), seed=0
     ):
-        self.kind, self.hidden = one_of("kind", kind, INPUTS), integer("hidden", hidden, 1)
-        self.initial = number("initial", initial, 0.0, open_low=True)
-        self.scaling, self.seed = scaling, seed_number("seed", seed)
+        self.kind, self.hidden = kind, hidden
+        self.initial = initial
+        self.scaling, self.seed = scaling, seed
 
     def _fit(self, x, torque):
         low, high = (x.min(0), x.max(0)) if self.kind == "states" else (0.0, 1.0)
-        if np.any(high <= low):
-            raise ValueError("x must vary in every position, velocity and acceleration")
         self._range = low, high - low
         data = TrainingSet.from_arrays(self._even(x), torque, scaling=self.scaling)
         self.model = self._train(data)
@@ -80,7 +77,7 @@ class ByDescent(_Network):
         self, hidden=HIDDEN_UNITS, epochs=EPOCHS, *, rate=None, momentum=0.95, warm_up=0, **options
     ):
         super().__init__(hidden, **options)
-        self.epochs = integer("epochs", epochs, 1)
+        self.epochs = epochs
         self.rate, self.momentum, self.warm_up = rate, momentum, warm_up
 
     def _train(self, data):
@@ -100,7 +97,7 @@ class BySolver(_Network):
 
     def __init__(self, hidden=HIDDEN_UNITS, steps=60, *, decay=0.0, **options):
         super().__init__(hidden, **options)
-        self.steps, self.decay = integer("steps", steps, 1), number("decay", decay, 0.0)
+        self.steps, self.decay = steps, decay
 
     def _train(self, data):
         with warnings.catch_warnings():
@@ -116,7 +113,7 @@ class ByAdam(_Network):
 
     def __init__(self, hidden=HIDDEN_UNITS, epochs=3000, *, rate=0.02, decay=0.01, **options):
         super().__init__(hidden, **{"scaling": (-1.0, 1.0), **options})
-        self.epochs, self.rate, self.decay = integer("epochs", epochs, 1), rate, decay
+        self.epochs, self.rate, self.decay = epochs, rate, decay
 
     def _train(self, data):
         joints, width = data.x.shape[1:]
@@ -162,9 +159,8 @@ class _Sequence(Rival):
     kind = "windows"
 
     def __init__(self, channels=16, epochs=100, *, rate=0.01, decay=0.01, seed=0):
-        self.channels, self.epochs = integer("channels", channels, 1), integer("epochs", epochs, 1)
-        self.rate = number("rate", rate, 0.0, open_low=True)
-        self.decay, self.seed = number("decay", decay, 0.0), seed_number("seed", seed)
+        self.channels, self.epochs = channels, epochs
+        self.rate, self.decay, self.seed = rate, decay, seed
 
     @abstractmethod
     def _network(self, joints: int, width: int, outputs: int) -> nn.Module:
@@ -174,8 +170,6 @@ class _Sequence(Rival):
         joints, width = x.shape[1:]
         self.scale = [(each.mean((0, 2)), each.std((0, 2))) for each in self._parts(x)]
         self.offset, self.spread = torque.mean(0), torque.std(0)
-        if not (np.ptp(x, (0, 2)) > 0).all() or not (np.ptp(torque, 0) > 0).all():
-            raise ValueError("x and torque must vary in each joint")
         with torch.random.fork_rng(devices=[]):
             torch.manual_seed(self.seed)
             self.network = self._network(joints, width, torque.shape[1])
@@ -214,8 +208,6 @@ class Convolution(_Sequence):
 
     def _network(self, joints, width, outputs):
         left = width - 2 * (self.TAPS - 1)
-        if left < 1:
-            raise ValueError(f"windows must have {2 * self.TAPS - 1} samples or more, got {width}")
         return nn.Sequential(
             nn.Conv1d(2 * joints, self.channels, self.TAPS),
             nn.SiLU(),

@@ -99,8 +99,6 @@ class Rival(ABC):
         """Learn from cases, all at once; what was learnt before is forgotten."""
         if data.kind != self.kind:
             raise ValueError(f"data must be {self.kind} for {self!r}, got {data.kind}")
-        if not len(data):
-            raise ValueError("data must hold at least one case, got none")
         self.step = data.step
         self._fit(data.x, data.torque)
         self._shape, self._joints = data.x.shape[1:], data.torque.shape[1]
@@ -159,8 +157,6 @@ class Estimating(Rival):
     kind = "windows"
 
     def __init__(self, rival: Rival, degree: int = 3):
-        if rival.kind != "states":
-            raise ValueError(f"rival must be one of states, got {rival!r}, one of {rival.kind}")
         self.rival, self.degree = rival, degree
 
     def _fit(self, x, torque):

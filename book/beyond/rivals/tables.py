@@ -11,14 +11,13 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.spatial import cKDTree
 
 from beyond.rivals.protocol import OUTSIDE_MARGIN, Rival
-from ddlib._check import integer, number, one_of, shaped
+from ddlib._check import one_of, shaped
 from ddlib.dynamics import Operations
 from ddlib.identification import SIGN_SPEED
 
 _OVER = {"states": 3, "motions": 2, "configurations": 1}  # quantities of a joint that are axes
 _BEYOND = ("refuse", "edge")
 _QUANTITIES = (("position", "rad"), ("velocity", "rad/s"), ("acceleration", "rad/s^2"))
-_AXES = 8  # most axes of a multilinear table: each doubles the corners of a cell
 
 
 class _TableSize(NamedTuple):
@@ -36,15 +35,12 @@ def table_size(
     width: int = 4,  # bytes of a number
 ) -> _TableSize:
     """Cells and memory of a table with every cell."""
-    for name, value in (("cells", cells), ("axes", axes), ("numbers", numbers), ("width", width)):
-        integer(name, value, 1)
     all_cells = int(cells) ** axes
     return _TableSize(all_cells, all_cells * numbers, all_cells * numbers * width)
 
 
 def _cube_corners(u, cells: int) -> tuple[np.ndarray, np.ndarray]:
     """Nodes around points ``(points, axes)`` of the unit cube, and their multilinear weights."""
-    u = shaped("u", u, "(points, axes)")
     low = np.clip(np.floor(u * cells).astype(int), 0, cells - 1)
     part = u * cells - low
     nodes, weights = np.zeros((len(u), 1, 0), dtype=int), np.ones((len(u), 1))
@@ -63,8 +59,7 @@ def full_table(
     function: Callable, x, limits, cells: int, *, interpolated: bool = True
 ) -> np.ndarray:
     """What a table would answer that has the right torque in every cell, shape (cases, joint)."""
-    low, high = limits = shaped("limits", limits, "(2, joint, 3)")
-    x = shaped("x", x, f"(cases, {limits.shape[1]}, 3)")
+    low, high = limits
     u = _inside(x, low, high, "refuse").reshape(len(x), -1)
     size = (high - low).ravel()
     if not interpolated:
@@ -154,7 +149,7 @@ class LocalPlanes(Nearest):
 
     def __init__(self, neighbours: int = 60):
         super().__init__()
-        self.neighbours = integer("neighbours", neighbours, 2)
+        self.neighbours = neighbours
 
     def _torque(self, x):
         asked = (x / self.deviation).reshape(len(x), -1)
@@ -187,8 +182,7 @@ class CellTable(Bounded):
         beyond: str = "refuse",  # or "edge"
     ):
         super().__init__(limits, beyond)
-        self.cells, self.over = integer("cells", cells, 1), one_of("over", over, tuple(_OVER))
-        self.friction, self.ridge = friction, number("ridge", ridge, 0.0, open_low=True)
+        self.cells, self.over, self.friction, self.ridge = cells, over, friction, ridge
 
     def _fit(self, x, torque):
         place = self._places(self._bound(x))
@@ -252,20 +246,14 @@ class GridTable(Bounded):
 
     The nodes get the torques that fit all cases best by least squares, with a penalty on their
     distance from the mean torque: `ridge` is so many cases at each node that say it. A node next
-    to which nothing was recorded has the mean. For more axes than `_AXES` `fit` raises ValueError.
+    to which nothing was recorded has the mean.
     """
 
     def __init__(self, cells: int = 4, ridge: float = 1e-3, limits=None, beyond: str = "refuse"):
         super().__init__(limits, beyond)
-        self.cells = integer("cells", cells, 1)
-        self.ridge = number("ridge", ridge, 0.0, open_low=True)
+        self.cells, self.ridge = cells, ridge
 
     def _fit(self, x, torque):
-        if x[0].size > _AXES:
-            raise ValueError(
-                f"data must have at most {_AXES // 3} joints for a multilinear table, "
-                f"got {x.shape[1]}"
-            )
         index, weights = self._corners(self._bound(x))
         self.known, places = np.unique(index, return_inverse=True)
         rows = np.repeat(np.arange(len(x)), weights.shape[1])
