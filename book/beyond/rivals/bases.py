@@ -12,7 +12,6 @@ from sklearn.linear_model import Ridge
 from sklearn.preprocessing import PolynomialFeatures
 
 from beyond.rivals.protocol import Rival
-from ddlib.dynamics import Operations
 
 _BLOCK = 2000  # cases whose functions are computed at once
 _POLYNOMIALS = {"monomials": polyvander, "chebyshev": chebvander}  # of one variable
@@ -97,37 +96,17 @@ class Polynomial(_Basis):
             values *= _POLYNOMIALS[self.kind_of](variable, self.degree)[:, power]
         return values
 
-    def operations(self):
-        """Arithmetic of one prediction."""
-        terms, joints = self.coefficients.shape
-        variables = self.exponents.shape[1]
-        double = self.kind_of == "chebyshev"  # T_k = 2 u T_(k-1) - T_(k-2)
-        powers = variables * max(self.degree - 1, 0)
-        joined = int((self.exponents > 0).sum(1).clip(min=1).sum()) - terms
-        return Operations(
-            variables * (1 + double) + powers + joined + terms * joints,
-            variables + double * powers + terms * joints,
-        )
-
 
 class Fourier(_Basis):
-    """A Fourier series of the state; `period` of the longest wave is in edges of the box."""
+    """A Fourier series of the state; the longest wave is twice as long as the box."""
 
-    def __init__(self, order: int = 2, period: float = 2.0, ridge: float = 0.0):
+    def __init__(self, order: int = 2, ridge: float = 0.0):
         super().__init__(ridge)
-        self.order, self.period = order, period
+        self.order = order
 
     def _prepare(self, variables):
         self.waves = _wave_numbers(variables, self.order)
 
     def _functions(self, u):
-        angle = np.pi / self.period * (u @ self.waves.T)
+        angle = np.pi / 2 * (u @ self.waves.T)
         return np.concatenate([np.ones((len(u), 1)), np.cos(angle), np.sin(angle)], 1)
-
-    def operations(self):
-        """Operations for one torque of all joints."""
-        (waves, variables), (terms, joints) = self.waves.shape, self.coefficients.shape
-        steps = int(np.abs(self.waves).sum()) - waves  # sums of the scaled axes
-        return Operations(
-            variables + terms * joints, variables + steps + terms * joints, 0, 2 * waves
-        )

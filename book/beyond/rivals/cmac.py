@@ -7,8 +7,6 @@ from scipy import sparse
 from scipy.linalg import solve_triangular
 
 from beyond.rivals.tables import Bounded
-from ddlib._check import integer
-from ddlib.dynamics import Operations
 
 _BLOCK = 300  # cases whose updates are solved at once, by one triangular system
 _WORSE = 1e3  # a training error that has grown this many times has diverged
@@ -44,10 +42,8 @@ class CMAC(Bounded):
         beyond: str = "refuse",  # or "edge"
     ):
         super().__init__(limits, beyond)
-        self.layers, self.epochs = layers, epochs
-        self.width = width
-        self.slots = slots if slots is None else integer("slots", slots, 1)
-        self.rate = rate
+        self.layers, self.width, self.slots = layers, width, slots
+        self.rate, self.epochs = rate, epochs
 
     def _fit(self, x, torque):
         cubes = self._cubes(self._bound(x))
@@ -121,11 +117,6 @@ class CMAC(Bounded):
         """Numbers kept."""
         addresses = len(self.known) if self.slots is None else 0
         return self.weights.size + addresses + self.low.size + self.high.size
-
-    def operations(self):
-        """Arithmetic of one prediction."""
-        axes, joints = self.low.size, self.weights.shape[1]
-        return Operations(axes, axes * self.layers + (self.layers - 1) * joints)
 
 
 def _error(left, deviation) -> float:

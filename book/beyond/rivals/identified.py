@@ -10,10 +10,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from beyond.rivals.protocol import Rival, derivative_filters
-from ddlib._check import number, one_of
-from ddlib.dynamics import Operations, Tape
-from ddlib.identification import FRICTION, GRAVITY, RIGID, SIGN_SPEED, from_states, least_squares
-from ddlib.learning import check_width
+from ddlib._check import one_of
+from ddlib.identification import FRICTION, GRAVITY, RIGID, from_states, least_squares
 
 _RIDGES = tuple(10.0**k for k in range(-12, 1))  # of the largest singular value squared
 
@@ -45,41 +43,6 @@ class Identified(Rival):
         """Stored numbers: the parameters."""
         return len(self.names)
 
-    def operations(self):
-        """Arithmetic of the equations; what is shared is computed once, and a cut is free."""
-        tape = Tape()
-        state = [[tape.unknown(0.3 + j + k) for j in range(2)] for k in range(3)]
-        constants = {name: tape.known(0.7 + k) for k, name in enumerate(self.names)}
-        return tape.needed(_written_out(*state, constants))
-
-
-def _written_out(q, qd, qdd, constants) -> list:
-    """The torques of both joints as a formula, for counting: what is 0 is left out."""
-    (q1, q2), (v1, v2), (a1, a2) = q, qd, qdd
-    c2, s2 = np.cos(q2), np.sin(q2)
-    columns = {
-        "a": (a1, None),
-        "b": (c2 * (2 * a1 + a2) - s2 * v2 * (2 * v1 + v2), c2 * a1 + s2 * v1 * v1),
-        "d": (a2, a1 + a2),
-        "g1": (np.sin(q1), None),
-        "g2": (np.sin(q1 + q2),) * 2,
-        "F_v1": (v1, None),
-        "F_v2": (None, v2),
-        "F_c1": (_blurred(v1), None),
-        "F_c2": (None, _blurred(v2)),
-    }
-    torques = [0.0, 0.0]
-    for name, constant in constants.items():
-        for j, column in enumerate(columns[name]):
-            if column is not None:
-                torques[j] = torques[j] + constant * column
-    return torques
-
-
-def _blurred(speed):
-    """The sign of a speed before it is cut off at 1; comparisons are free."""
-    return speed * (1 / SIGN_SPEED)
-
 
 class Linear(Rival):
     """Linear least squares on windows or states, with a constant and a ridge.
@@ -90,10 +53,7 @@ class Linear(Rival):
     """
 
     def __init__(self, kind="windows", width=None, ridge=None, blocks=5):
-        self.kind = kind
-        self.width = None if width is None else check_width(width)
-        self.ridge = None if ridge is None else number("ridge", ridge, 0.0)
-        self.blocks = blocks
+        self.kind, self.width, self.ridge, self.blocks = kind, width, ridge, blocks
 
     def _fit(self, x, torque):
         samples = x.shape[-1]
@@ -121,10 +81,6 @@ class Linear(Rival):
     def count(self):
         """Stored numbers: weights of the filters, and constants."""
         return self.matrix.size + self.constant.size
-
-    def operations(self):
-        """Arithmetic: a product and a sum for each weight."""
-        return Operations(self.matrix.size, self.matrix.size)
 
 
 class LinearWithSigns(Linear):

@@ -11,7 +11,6 @@ import torch
 from torch import nn
 
 from beyond.rivals.protocol import Rival
-from ddlib.dynamics import Operations
 from ddlib.learning import (
     INITIAL,
     NotConverged,
@@ -32,8 +31,7 @@ class _Network(Rival):
     def __init__(
         self, hidden=HIDDEN_UNITS, kind="windows", *, initial=INITIAL, scaling=(0.0, 1.0), seed=0
     ):
-        self.kind, self.hidden = kind, hidden
-        self.initial = initial
+        self.kind, self.hidden, self.initial = kind, hidden, initial
         self.scaling, self.seed = scaling, seed
 
     def _fit(self, x, torque):
@@ -63,12 +61,6 @@ class _Network(Rival):
         weights = self.model.weights
         return weights.count(biases=True) + 2 * weights.output_bias.size
 
-    def operations(self):
-        weights = self.model.weights
-        units = weights.hidden_bias.size + weights.output_bias.size
-        each, outputs = weights.count(), weights.output_bias.size
-        return Operations(each + outputs, each + units + outputs, units, units)
-
 
 class ByDescent(_Network):
     """The network by batch descent with momentum, as `ddlib.learning.train_ensemble`."""
@@ -77,8 +69,7 @@ class ByDescent(_Network):
         self, hidden=HIDDEN_UNITS, epochs=EPOCHS, *, rate=None, momentum=0.95, warm_up=0, **options
     ):
         super().__init__(hidden, **options)
-        self.epochs = epochs
-        self.rate, self.momentum, self.warm_up = rate, momentum, warm_up
+        self.epochs, self.rate, self.momentum, self.warm_up = epochs, rate, momentum, warm_up
 
     def _train(self, data):
         options = {"rate": self.rate, "momentum": self.momentum, "warm_up": self.warm_up}
@@ -217,18 +208,6 @@ class Convolution(_Sequence):
             nn.Linear(self.channels * left, outputs),
         )
 
-    def operations(self):
-        """Operations for one window."""
-        products = units = 0
-        length = self._shape[1]
-        for layer in self.network:
-            if isinstance(layer, nn.Conv1d):
-                length -= self.TAPS - 1
-                products += layer.weight.numel() * length
-                units += self.channels * length
-        products += self.network[-1].weight.numel()
-        return Operations(products + units, products + units, units, units)
-
 
 class Recurrent(_Sequence):
     """A gated recurrent unit that reads the window; its last state gives the torques."""
@@ -238,16 +217,6 @@ class Recurrent(_Sequence):
 
     def _network(self, joints, width, outputs):
         return _LastState(2 * joints, self.channels, outputs)
-
-    def operations(self):
-        """Operations for one window, all its samples read."""
-        steps, units = self._shape[1], self.channels
-        gates = self.network.recurrent
-        products = gates.weight_ih_l0.numel() + gates.weight_hh_l0.numel() + 3 * units
-        last = self.network.output.weight.numel()
-        sums = products + 4 * units
-        curved = 3 * units * steps
-        return Operations(steps * products + last, steps * sums + last, curved, curved)
 
 
 class _LastState(nn.Module):

@@ -17,7 +17,6 @@ import numpy as np
 
 from ddlib._check import number, one_of, shaped
 from ddlib.analysis import savitzky_golay
-from ddlib.dynamics import Operations
 from ddlib.learning import cases
 from ddlib.metrics import rmss
 from ddlib.simulation import Recording
@@ -89,7 +88,7 @@ def derivative_filters(width: int, step: float, degree: int = 3) -> np.ndarray:
 class Rival(ABC):
     """Something that learns torques and predicts them.
 
-    A subclass defines `_fit`, `_torque`, `count` and `operations`. One whose answer makes no
+    A subclass defines `_fit`, `_torque` and `count`. One whose answer makes no
     sense beyond its training inputs raises a ValueError in `_torque`; all others warn.
     """
 
@@ -146,10 +145,6 @@ class Rival(ABC):
     def count(self) -> int:
         """Stored numbers: all that must be kept to predict."""
 
-    @abstractmethod
-    def operations(self) -> Operations:
-        """Arithmetic of one prediction, all joints; comparisons and look-ups are free."""
-
 
 class Estimating(Rival):
     """A rival of states that sees windows: a polynomial in each window gives the states."""
@@ -170,22 +165,12 @@ class Estimating(Rival):
         """Stored numbers: the rival's own and the three filters."""
         return self.rival.count() + self.filters.size
 
-    def operations(self):
-        """Arithmetic: the rival's own and the three filters of each joint."""
-        joints, (rows, width) = self._shape[0], self.filters.shape
-        own, each = self.rival.operations(), joints * rows
-        return own._replace(
-            multiplications=own.multiplications + each * width,
-            additions=own.additions + each * (width - 1),
-        )
-
 
 class _Trial(NamedTuple):
     """How a rival fared; errors are by set, pooled over joints, over the set's own deviation."""
 
     rmss: dict[str, float]
     count: int  # stored numbers
-    operations: Operations  # of one prediction
     seconds: float  # of processor time, for training
 
 
@@ -197,4 +182,4 @@ def trial(rival: Rival, training: Cases, tests: Mapping[str, Cases]) -> _Trial:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", OutsideFamilyWarning)
         errors = {name: float(rmss(rival.torque(c.x), c.torque)) for name, c in tests.items()}
-    return _Trial(errors, rival.count(), rival.operations(), seconds)
+    return _Trial(errors, rival.count(), seconds)

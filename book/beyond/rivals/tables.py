@@ -11,12 +11,9 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.spatial import cKDTree
 
 from beyond.rivals.protocol import OUTSIDE_MARGIN, Rival
-from ddlib._check import one_of, shaped
-from ddlib.dynamics import Operations
 from ddlib.identification import SIGN_SPEED
 
 _OVER = {"states": 3, "motions": 2, "configurations": 1}  # quantities of a joint that are axes
-_BEYOND = ("refuse", "edge")
 _QUANTITIES = (("position", "rad"), ("velocity", "rad/s"), ("acceleration", "rad/s^2"))
 
 
@@ -78,10 +75,7 @@ class Bounded(Rival):
     """A rival with room for a box of states alone; one outside is refused, or taken to the edge."""
 
     def __init__(self, limits=None, beyond: str = "refuse"):
-        self.limits = limits if limits is None else shaped("limits", limits, "(2, joint, 3)")
-        if limits is not None and not (self.limits[0] < self.limits[1]).all():
-            raise ValueError("limits must have least values below the largest ones")
-        self.beyond = one_of("beyond", beyond, _BEYOND)
+        self.limits, self.beyond = limits, beyond
 
     def _bound(self, x) -> np.ndarray:
         """The box, decided by training states; they in units of it."""
@@ -89,11 +83,6 @@ class Bounded(Rival):
             low, high = x.min(0), x.max(0)
             slack = np.where(high > low, OUTSIDE_MARGIN * (high - low), 0.5)
             self.low, self.high = low - slack, high + slack
-        elif self.limits.shape[1:] != x.shape[1:]:
-            raise ValueError(
-                f"limits must be of shape (2, {x.shape[1]}, 3) for these states, "
-                f"got {self.limits.shape}"
-            )
         else:
             self.low, self.high = self.limits
         return self._scaled(x)
@@ -133,11 +122,6 @@ class Nearest(Bounded):
     def count(self):
         """Stored numbers: all cases, their torques, and the deviations."""
         return self._tree.data.size + self._torques.size + self.deviation.size
-
-    def operations(self):
-        """Operations to compare a case with all that are kept."""
-        cases, axes = self._tree.data.shape
-        return Operations(axes + cases * axes, cases * (2 * axes - 1))
 
 
 class LocalPlanes(Nearest):
@@ -224,21 +208,9 @@ class CellTable(Bounded):
         """Whether nothing was recorded in the cells of states ``(cases, joint, 3)``."""
         return self._tree.query(self._places(self._scaled(x)))[0] > 0
 
-    def full(self) -> _TableSize:
-        """What the table takes with all its cells, filled or not."""
-        return table_size(self.cells, self.filled.shape[1], self.coefficients[0].size)
-
     def count(self):
         """Numbers kept."""
         return self.filled.size + self.coefficients.size + self.low.size + self.high.size
-
-    def operations(self):
-        """Arithmetic of one prediction."""
-        axes, (columns, joints) = self.filled.shape[1], self.coefficients.shape[1:]
-        products = joints * (joints + 1) // 2 if self.over == "configurations" else 0
-        signs = joints * (self.over == "configurations" and self.friction)
-        each = (columns - 1) * joints
-        return Operations(axes + products + signs + each, axes + each)
 
 
 class GridTable(Bounded):
@@ -280,22 +252,6 @@ class GridTable(Bounded):
         shape = (self.cells + 1,) * nodes.shape[-1]
         return np.ravel_multi_index(np.moveaxis(nodes, -1, 0), shape), weights
 
-    def empty(self, x) -> np.ndarray:
-        """Whether nothing was recorded next to any corner of the cells of states."""
-        index, _ = self._corners(self._scaled(x))
-        return ~np.isin(index, self.known).any(-1)
-
-    def full(self) -> _TableSize:
-        """What the table takes with all its nodes, known or not."""
-        return table_size(self.cells + 1, self.low.size, self.values.shape[1])
-
     def count(self):
         """Numbers kept."""
         return self.known.size + self.values.size + self.mean.size + 2 * self.low.size
-
-    def operations(self):
-        """Arithmetic of one prediction."""
-        axes, joints = self.low.size, self.values.shape[1]
-        corner = 2**axes
-        weights = 2 * corner - 4  # products, doubling from the second axis on
-        return Operations(axes + weights + corner * joints, 2 * axes + (corner - 1) * joints)

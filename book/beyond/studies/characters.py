@@ -126,7 +126,7 @@ def _entry(entry: _Entry, split) -> dict:
         row["seconds"].append(time.process_time() - began)
         row["test"].append(tested(rival._torque, test))
         row["training"].append(tested(rival._torque, training)["torque"])
-    return row | {"count": rival.count(), "operations": list(rival.operations())}
+    return row | {"count": rival.count()}
 
 
 def _dead(rival: LagrangianNetwork, q) -> list[bool]:

@@ -127,7 +127,6 @@ def _row(name, inputs, size, found) -> dict:
         "inputs": inputs,
         "size": size,
         "count": found.count,
-        "operations": list(found.operations),
         "seconds": [],
         "errors": {part: [] for part in found.rmss},
     }
