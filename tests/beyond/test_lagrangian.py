@@ -60,16 +60,6 @@ def lagrange(rival, q, qd, qdd, h=1e-4):
     return torque
 
 
-def test_the_mass_matrix_is_symmetric_and_positive_definite_whatever_the_weights():
-    for seed, gain in enumerate((0.1, 1.0, 10.0)):
-        rival = untrained(seed, 3, gain)
-        mass = rival.mass_matrix(states(40, seed, 10.0, 3)[..., 0])
-        np.testing.assert_array_equal(mass, np.swapaxes(mass, -1, -2))
-        least = rival.floor * rival.units.torque / rival.units.acceleration
-        size = np.abs(mass).max((-1, -2))
-        assert (np.linalg.eigvalsh(mass)[:, 0] >= least - 1e-12 * size).all()
-
-
 def test_a_known_arm_is_recovered_from_torques_alone():
     arm = UPRIGHT
     train, test = known(arm, 600), known(arm, 200, 1)

@@ -1,9 +1,9 @@
-"""Convolutions and recurrent units against plain sums."""
+"""Convolutions along the window against plain sums."""
 
 import numpy as np
 from scipy.special import expit
 
-from beyond.rivals.networks import Convolution, Recurrent
+from beyond.rivals.networks import Convolution
 from beyond.rivals.protocol import Cases
 
 
@@ -44,22 +44,6 @@ def test_convolutions_are_sums_along_the_window():
     x = layer(scaled(rival, data.x), w["0.weight"], w["0.bias"])
     x = layer(x, w["2.weight"], w["2.bias"])
     y = x.reshape(40, -1) @ w["5.weight"].T + w["5.bias"]
-    wanted = data.torque.mean(0) + data.torque.std(0) * y
-    np.testing.assert_allclose(rival.torque(data.x), wanted, atol=1e-4)
-    assert rival.count() == sum(x.size for x in w.values()) + 8 + 4
-
-
-def test_the_recurrent_unit_is_gated():
-    data = windows(40)
-    rival = Recurrent(4, epochs=3).fit(data)
-    w = {name.removeprefix("recurrent."): x for name, x in arrays(rival.network).items()}
-    h = np.zeros((40, 4))
-    for x in np.moveaxis(scaled(rival, data.x), -1, 0):
-        inner = x @ w["weight_ih_l0"].T + w["bias_ih_l0"]
-        outer = h @ w["weight_hh_l0"].T + w["bias_hh_l0"]
-        reset, update = (expit(inner[:, k : k + 4] + outer[:, k : k + 4]) for k in (0, 4))
-        h = (1 - update) * np.tanh(inner[:, 8:] + reset * outer[:, 8:]) + update * h
-    y = h @ w["output.weight"].T + w["output.bias"]
     wanted = data.torque.mean(0) + data.torque.std(0) * y
     np.testing.assert_allclose(rival.torque(data.x), wanted, atol=1e-4)
     assert rival.count() == sum(x.size for x in w.values()) + 8 + 4

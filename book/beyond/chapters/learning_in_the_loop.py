@@ -237,10 +237,7 @@ def show(name: str) -> Illustration:
 
 def part(name: str, setup: str = "joint damping") -> dict:
     """The study's "motion", "family" or "rates" under a reading of the controller."""
-    setups = results.read("learning-in-the-loop")["setups"]
-    if setup not in setups or name not in setups[setup]:
-        raise ValueError(f"name and setup must be of the study, got {name!r}, {setup!r}")
-    return setups[setup][name]
+    return results.read("learning-in-the-loop")["setups"][setup][name]
 
 
 def on(
