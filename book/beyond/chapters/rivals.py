@@ -50,7 +50,7 @@ _SMOOTHED = {
     "learnt": "filters and equations",
     "butterworth": "Butterworth filter",
 }
-_TOLD = {
+_LABELS = {
     "identified": "equations",
     "filters and equations": "learnt filters",
     "Butterworth filter": "Butterworth, equations",
@@ -165,7 +165,7 @@ def show(name: str = "errors") -> Illustration | Table:
     shown = {}
     for name, one in _entered().items():
         errors, stored = _errors(name), np.median(one["count"])
-        shown[_TOLD.get(name, name)] = errors, f"{np.median(errors):.3f}", f"{stored:,.0f}"
+        shown[_LABELS.get(name, name)] = errors, f"{np.median(errors):.3f}", f"{stored:,.0f}"
     order = sorted(shown, key=lambda name: np.median(shown[name][0]))
     medians = "; ".join(f"{name} {shown[name][1]}, {shown[name][2]} numbers" for name in order)
     floor = results.read("rivals")["floor"]["positions"]["trajectory 6"]

@@ -6,7 +6,6 @@ windows. `Rival` checks what goes in and what comes out, and `trial` measures th
 
 from __future__ import annotations
 
-import time
 import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
@@ -171,15 +170,12 @@ class _Trial(NamedTuple):
 
     rmss: dict[str, float]
     count: int  # stored numbers
-    seconds: float  # of processor time, for training
 
 
 def trial(rival: Rival, training: Cases, tests: Mapping[str, Cases]) -> _Trial:
     """Train a rival and test it on named sets; a test beyond its training inputs is no warning."""
-    began = time.process_time()
     rival.fit(training)
-    seconds = time.process_time() - began
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", OutsideFamilyWarning)
         errors = {name: float(rmss(rival.torque(c.x), c.torque)) for name, c in tests.items()}
-    return _Trial(errors, rival.count(), seconds)
+    return _Trial(errors, rival.count())
