@@ -10,6 +10,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
+from ddlib._check import positive, shaped
 from ddlib.figures import COLOUR_MAP, COLOURS, Illustration, illustrate, plain_ticks
 
 
@@ -25,6 +26,11 @@ def maps(
 
     The first axis of `errors` goes right, the second up; errors are above 0.
     """
+    edge = shaped("edge", edge, "(places,)")
+    if not errors:
+        raise ValueError("errors must hold a panel or more, got none")
+    for title, values in errors.items():
+        positive(f"errors of {title!r}", values, (edge.size,) * 2)
     rows = -(-len(errors) // 2)  # of two maps, rounded up
 
     def draw(figure: Figure):
