@@ -5,6 +5,8 @@ Its figures are numbered on from those of its lesson.
 
 from __future__ import annotations
 
+from hashlib import sha1
+
 from docutils import nodes
 
 EVIDENCE = "book/evidence/"
@@ -17,6 +19,15 @@ def take_numbers_away(app, env):
             env.toc_secnumbers.pop(page, None)
             for entry in toc.findall(nodes.reference):
                 entry.attributes.pop("secnumber", None)
+
+
+def write_all(app, env):
+    """Titles and numbers stand on other pages, too: if one changed, all pages are written anew."""
+    titles = {page: title.astext() for page, title in env.titles.items()}
+    shown = titles, env.toc_secnumbers, env.toc_fignumbers
+    key = sha1(repr(shown).encode()).hexdigest()
+    before, env.dd_shown = getattr(env, "dd_shown", ""), key
+    return env.found_docs if before != key else ()
 
 
 def neighbours(pages: list[str], page: str) -> tuple[str | None, str | None]:
@@ -40,6 +51,7 @@ def lead_on(app, page, template, context, doctree):
 
 
 def setup(app):
+    app.connect("env-updated", write_all)
     app.connect("env-check-consistency", take_numbers_away)
     app.connect("html-page-context", lead_on)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
