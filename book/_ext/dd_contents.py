@@ -23,8 +23,11 @@ def take_numbers_away(app, env):
 
 def write_all(app, env):
     """Titles and numbers stand on other pages, too: if one changed, all pages are written anew."""
-    titles = {page: title.astext() for page, title in env.titles.items()}
-    shown = titles, env.toc_secnumbers, env.toc_fignumbers
+    numbers = env.toc_secnumbers, env.toc_fignumbers
+    shown = [
+        (page, env.titles[page].astext(), *(kind.get(page) for kind in numbers))
+        for page in sorted(env.found_docs)
+    ]
     key = sha1(repr(shown).encode()).hexdigest()
     before, env.dd_shown = getattr(env, "dd_shown", ""), key
     return env.found_docs if before != key else ()
@@ -51,7 +54,7 @@ def lead_on(app, page, template, context, doctree):
 
 
 def setup(app):
-    app.connect("env-updated", write_all)
+    app.connect("env-get-updated", write_all, priority=900)  # when all are numbered
     app.connect("env-check-consistency", take_numbers_away)
     app.connect("html-page-context", lead_on)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -56,8 +56,9 @@ def call(app, page, text):
     of = lesson(Path(app.srcdir), page)
     if of is None:
         return
-    for name in ("objectives", "quizzes"):
-        app.env.note_dependency(str(of.root / "book" / f"{name}.yml"))
+    for path in (of.root / "book" / f"{name}.yml" for name in ("objectives", "quizzes")):
+        if path.is_file():  # a part of the book may lack it
+            app.env.note_dependency(str(path))
     calls = ""
     if of.objectives:
         calls += f"{CAN_DO}\n\n{BEGINS}\n\n```{{objectives}} {of.name}\n```\n\n"
