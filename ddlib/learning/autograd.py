@@ -7,7 +7,7 @@ import torch
 from torch import nn
 from tqdm.auto import tqdm
 
-from ddlib._check import finite_array, flag, like, shaped
+from ddlib._check import finite_array, flag, instance, shaped
 from ddlib.learning.network import INITIAL, WEIGHT_NAMES, TorqueModel, Weights
 from ddlib.learning.training import (
     History,
@@ -163,7 +163,7 @@ def train(
     TrainingDiverged
         If the error is no longer finite; if it is, but ends above 1: a `WorseThanMean` warning.
     """
-    like("network", network, "Module")
+    instance("network", network, nn.Module)
     flag("progress", progress)
     check_descent(rate, momentum, epochs)
     x, y = finite_array("x", x), finite_array("y", y)
