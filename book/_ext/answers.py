@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from dd_quiz import OWN
-from dd_reader import FOLDED
+from lessons import FOLDED, OWN
 
 STARTER = re.compile(r"(?m)^mine = \.\.\.")
 # In Markdown, where a parser of HTML would take a "<" of a formula for a tag

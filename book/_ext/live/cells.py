@@ -8,7 +8,7 @@ import re
 from functools import cache
 
 from answers import exercises, is_check, is_open, is_starter
-from dd_reader import CHANGE_THIS
+from lessons import CHANGE_THIS
 
 from live.handles import handles
 from live.packages import PAGE

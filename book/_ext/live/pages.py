@@ -8,8 +8,8 @@ import shutil
 from pathlib import Path
 
 import nbformat
-from dd_lessons import chapters
 from dd_reader import has_script
+from lessons import chapters
 from offers import FIRST as FIRST_PAGE, offer
 
 from live.cells import kind, live_cells
