@@ -132,7 +132,7 @@ HUES = """() => {
 @browser_test
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_curves_have_the_colours_of_figures(tmp_path, visit, widget, scheme):
-    page = visit(page_of(tmp_path / "page.html", widget), color_scheme=scheme).page
+    page = visit(page_of(tmp_path / "page.html", widget), scheme=scheme).page
     wanted = [tuple(round(255 * part) for part in to_rgb(colour)) for colour in COLOURS]
     assert page.evaluate(HUES) == [f"rgb{rgb}" for rgb in wanted]
 
