@@ -64,7 +64,7 @@ def printed(call) -> str:
 
 def variants(lesson: str) -> list[dict[str, str]] | str:
     """The settings of all variants of a lesson; or why it has none."""
-    kept = entries(ROOT, "variants").get(lesson, "it has no variants")
+    kept = entries(ROOT, "variants").get(lesson, "variants.yml has no variants of this lesson")
     return kept if isinstance(kept, str) else [{k: str(v) for k, v in one.items()} for one in kept]
 
 
