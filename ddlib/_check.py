@@ -196,6 +196,16 @@ def instance(name: str, value, *kinds: type) -> None:
         raise TypeError(f"{name} must be of class {names}, got {told(value)}")
 
 
+def series(name: str, values, *kinds: type) -> list:
+    """`values` as a list; TypeError if they are no series, or one is of none of these classes."""
+    if isinstance(values, (str, Mapping)) or not hasattr(values, "__iter__"):
+        raise TypeError(f"{name} must be a series, got {told(values)}")
+    items = list(values)
+    for item in items if kinds else ():
+        instance(name, item, *kinds)
+    return items
+
+
 def function_of(name: str, value, signature: str) -> None:
     """Refuse what cannot be called; `signature` says how it will be."""
     if not callable(value):
@@ -243,19 +253,18 @@ def pair(name: str, value, low=-np.inf, high=np.inf) -> None:
         raise ValueError(f"{name} must be an increasing pair{where}, got {told(value)}")
 
 
-def triple(name: str, value) -> None:
-    """Refuse what is no `Trajectory`: positions, velocities and accelerations of one shape."""
+def triple(name: str, value) -> list[np.ndarray]:
+    """Positions, velocities and accelerations of a `Trajectory`, refused unless of one shape."""
     if not isinstance(value, (tuple, list)) or len(value) != 3:
         raise TypeError(
             f"{name} must be a Trajectory of positions, velocities and accelerations, as "
             f"pick_and_place(extents_deg, t) returns it, got {told(value)}"
         )
-    shapes = [finite_array(f"{name}.{part}", x, 2).shape for part, x in zip(_PARTS, value)]
+    arrays = [finite_array(f"{name}.{part}", x, 2) for part, x in zip(("q", "qd", "qdd"), value)]
+    shapes = [array.shape for array in arrays]
     if len(set(shapes)) > 1:
         raise ValueError(f"{name} must have q, qd and qdd of one shape, got {told(shapes)}")
-
-
-_PARTS = ("q", "qd", "qdd")
+    return arrays
 
 
 def cases_of(name: str, value) -> None:
@@ -283,13 +292,6 @@ def along(name: str, value, axis: int, joints: int) -> None:
         raise ValueError(f"{name} must have {joints} joints along axis {axis}, got shape {shape}")
 
 
-def known_options(call: str, options, known: tuple[str, ...]) -> None:
-    """Refuse an option that a call does not have; a TypeError as Python's own."""
-    for name in options:
-        if name not in known:
-            raise TypeError(f"{call} has no option {name!r}; it has {', '.join(known)}")
-
-
 def varies(name: str, torque, advice: str) -> None:
     """Refuse torques (..., cases, joint) of which one joint's never changes."""
     torque = np.asarray(torque)
@@ -300,11 +302,3 @@ def varies(name: str, torque, advice: str) -> None:
             f"{name} must change at each joint, but joint {joint + 1} is "
             f"{torque[..., 0, joint].flat[0] + 0.0:g} throughout: {advice}"
         )
-
-
-def regular(name: str, value) -> None:
-    """Refuse lists of unequal lengths, of which numpy makes no array."""
-    try:
-        np.shape(value)
-    except (TypeError, ValueError):
-        raise TypeError(f"{name} must be a number or an array, got {told(value)}") from None

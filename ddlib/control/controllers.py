@@ -13,7 +13,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ddlib._check import function_of, like, non_negative, number, shaped, told
+from ddlib._check import function_of, instance, non_negative, number, shaped, told
 from ddlib.dynamics import Arm
 from ddlib.trajectories import Trajectory
 
@@ -143,7 +143,7 @@ class ComputedTorque:
     kd: tuple[float, float]
 
     def __post_init__(self):
-        like("arm", self.arm, "Arm")
+        instance("arm", self.arm, Arm)
         for name in ("kp", "kd"):
             non_negative(name, getattr(self, name), 2)
 

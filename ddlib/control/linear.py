@@ -7,7 +7,7 @@ from typing import NamedTuple
 import control
 import numpy as np
 
-from ddlib._check import filled, finite_array, integer, like, non_negative, number, told
+from ddlib._check import filled, finite_array, instance, integer, non_negative, number, told
 
 
 def plant(inertia, viscous, stiffness=0.0) -> control.StateSpace:
@@ -72,7 +72,7 @@ def closed_loop(
     delay : int
         Whole periods between a reading and its torque; sampled loops only.
     """
-    like("joints", joints, "StateSpace")
+    instance("joints", joints, control.StateSpace)
     n = joints.ninputs
     A, command, torque, law, reference = _parts(joints, kp, ki, kd, period, delay)
     B = np.hstack([command @ reference[0] + reference[1], torque])
@@ -88,7 +88,7 @@ def opened_loop(
 
     In goes that torque, out comes the controller's answer with its sign reversed.
     """
-    like("joints", joints, "StateSpace")
+    instance("joints", joints, control.StateSpace)
     number("joint", joint, 0, joints.ninputs - 1)
     A, command, _, law, _ = _parts(joints, kp, ki, kd, period, delay)
     others = [k for k in range(joints.ninputs) if k != joint]
@@ -149,7 +149,7 @@ def margins(loop) -> Margins:
 
     The loop has one input and one output, in continuous time or, with a `dt`, sampled.
     """
-    like("loop", loop, "LinearSystem")
+    instance("loop", loop, control.StateSpace, control.TransferFunction)
     if (loop.ninputs, loop.noutputs) != (1, 1):
         raise ValueError(
             f"loop must have one input and one output, got {loop.ninputs} and {loop.noutputs}"
@@ -213,7 +213,7 @@ def late_poles(joints: control.StateSpace, gain, period: float, late: float) -> 
     The torque ``-gain x`` of a reading is held for a `period` from `late` s on, which may be
     longer. Between changes the joints (`plant`) are solved exactly (Astrom & Wittenmark 1997).
     """
-    like("joints", joints, "StateSpace")
+    instance("joints", joints, control.StateSpace)
     number("period", period, 0.0, open_low=True)
     whole, late = divmod(number("late", late, 0.0) / period + 1e-12, 1.0)
     states, inputs = joints.B.shape

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddlib._check import every, filled, finite_array, integer, like, number
+from ddlib._check import filled, finite_array, integer, number, series, shaped, told
 from ddlib.control.controllers import ControlLaw, Controller
 from ddlib.trajectories import Trajectory
 
@@ -36,8 +36,9 @@ def end_slope(width: int, degree: int, step: float) -> np.ndarray:
 
 def stacked(filters) -> np.ndarray:
     """Several weight rows as one array ``(filters, width)``, older readings weighted 0."""
-    every("filters", filters, "row of weights")
-    rows = [finite_array("filters", row) for row in filters]
+    rows = [shaped("filters", row, "(width,)") for row in series("filters", filters)]
+    if not rows:
+        raise ValueError("filters must be one or more, got none")
     width = max(map(len, rows))
     return np.stack([np.pad(row, (width - len(row), 0)) for row in rows])
 
@@ -55,7 +56,11 @@ class EstimatedVelocity:
     weights: tuple  #: Of the estimate, oldest reading first, (width,) or (runs, width).
 
     def __post_init__(self):
-        like("feedback", self.feedback, "Controller")
+        if not hasattr(self.feedback, "start"):
+            raise TypeError(
+                "feedback must have a start method, as pd(kp, kd) makes it, got "
+                f"{told(self.feedback)}"
+            )
         filled("weights", self.weights)
         if finite_array("weights", self.weights).ndim == 0:
             raise ValueError(f"weights must have shape (..., width), got {self.weights}")

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, like
+from ddlib._check import finite_array, instance, integer
 from ddlib.dynamics.arm import STANDARD_GRAVITY, checked_state
 from ddlib.dynamics.formulations import link_frame
 from ddlib.dynamics.serial import SerialArm, SpatialLink
@@ -20,7 +20,7 @@ def mass_matrix(arm: SerialArm, q) -> np.ndarray:
 
     Column j is the torque that accelerates joint j alone by 1 rad/s^2 from rest.
     """
-    like("arm", arm, "SerialArm")
+    instance("arm", arm, SerialArm)
     q = finite_array("q", q, arm.joints)
     weightless, one = SerialArm(arm.links), np.eye(arm.joints)
     rest = np.zeros_like(q)
@@ -39,32 +39,16 @@ def _frames(arm: SerialArm, q) -> np.ndarray:
     return np.stack(placed, -3)
 
 
-def hand_position(arm: SerialArm, q) -> np.ndarray:
-    """End of the last link at angles `q` (rad), shape ``(..., 3)``, m: x and y level, z up."""
-    like("arm", arm, "SerialArm")
-    return _frames(arm, q)[..., -1, :3, 3]
-
-
-def inertial_parameters(link: SpatialLink) -> np.ndarray:
-    """What a link's torques are linear in, shape (10,), about the origin of its frame.
-
-    Mass (kg), first moments x, y, z (kg m), second moments xx, yy, zz, xy, xz, yz (kg m^2, signed).
-    """
-    like("link", link, "SpatialLink")
-    com = np.array(link.com)
-    tensor = np.array(link.inertia) + link.mass * _steiner(com)
-    return np.concatenate([[link.mass], link.mass * com, [tensor[place] for place in _SECOND]])
-
-
 def regressor(arm: SerialArm, q, qd, qdd) -> np.ndarray:
     """Matrix Y ``(..., joints, 10 joints)`` with ``tau = Y p``; angles in rad.
 
-    p are the `inertial_parameters` of all links in their order. Force and moment of a link are
-    linear in them, and each joint feels the moments of all links beyond it about its axis. Many
-    columns depend on others, or are zero: only some combinations of parameters move a joint (Khosla
-    1986).
+    p are ten parameters of each link, in their order, about the origin of its frame: mass (kg),
+    first moments x, y, z (kg m), second moments xx, yy, zz, xy, xz, yz (kg m^2, signed). Force and
+    moment of a link are linear in them, and each joint feels the moments of all links beyond it
+    about its axis. Many columns depend on others, or are zero: only some combinations of parameters
+    move a joint (Khosla 1986).
     """
-    like("arm", arm, "SerialArm")
+    instance("arm", arm, SerialArm)
     q, qd, qdd = checked_state(q, qd, qdd, arm.joints)
     placed = _frames(arm, q)
     axes, places = placed[..., :3, 2], placed[..., :3, 3]
@@ -114,7 +98,7 @@ def _tensor_times(x) -> np.ndarray:
 
 def locked(arm: SerialArm, joints: int) -> SerialArm:
     """The arm with only its first joints free, what lies beyond locked at angle zero: one body."""
-    like("arm", arm, "SerialArm")
+    instance("arm", arm, SerialArm)
     integer("joints", joints, 1, arm.joints)
     if joints == arm.joints:
         return arm

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.linalg import eigh, null_space
 from scipy.stats import t as student
 
-from ddlib._check import finite_array, integer, like, number, one_of
+from ddlib._check import finite_array, instance, integer, number, one_of
 from ddlib.dynamics import Arm
 from ddlib.effects import CoulombFriction, Effects, ViscousFriction
 from ddlib.trajectories import Trajectory
@@ -139,7 +139,7 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
     ValueError
         If there are no more equations than parameters, or nothing can be told.
     """
-    like("equations", equations, "Equations")
+    instance("equations", equations, Equations)
     integer("rounds", rounds, 1)
     names, equation_count = equations.names, sum(y.shape[-1] for y in equations.torque)
     if equation_count <= len(names):

@@ -5,7 +5,6 @@ import pytest
 
 from beyond.control.windowed import (
     MeasuredWindows,
-    PlannedTorque,
     WindowFeedforward,
     poles_inside,
 )
@@ -54,16 +53,15 @@ def weight(windows):
     return 20 * windows[..., 0] - 30 * windows[..., 2] + 5 * windows[..., 4]
 
 
-@pytest.mark.parametrize("law", [PlannedTorque, MeasuredWindows])
-def test_a_loop_that_cannot_make_the_windows_is_refused(law):
+def test_a_loop_that_cannot_make_the_windows_is_refused():
     right, wrong = (WindowFeedforward(weight, 5, every, step=0.01) for every in (5, 4))
     with pytest.raises(ValueError, match=r"0.002 s are 0.008 s.* 0.01 s apart"):
-        record(ARM, law(wrong, FEEDBACK), (40, 30))
+        record(ARM, MeasuredWindows(wrong, FEEDBACK), (40, 30))
     with pytest.raises(ValueError, match=r"0.001 s are 0.005 s"):
-        record(ARM, law(right, FEEDBACK), (40, 30), control_step=0.001)
-    record(ARM, law(right, FEEDBACK), (40, 30), duration=0.1, rest=0.1)
+        record(ARM, MeasuredWindows(right, FEEDBACK), (40, 30), control_step=0.001)
+    record(ARM, MeasuredWindows(right, FEEDBACK), (40, 30), duration=0.1, rest=0.1)
     unknown = WindowFeedforward(weight, 5, 4)
-    record(ARM, law(unknown, FEEDBACK), (40, 30), duration=0.1, rest=0.1)
+    record(ARM, MeasuredWindows(unknown, FEEDBACK), (40, 30), duration=0.1, rest=0.1)
 
 
 @pytest.mark.parametrize("tap, late", [(0, 10), (1, 5), (2, 0), (3, -5), (4, -10)])

@@ -135,8 +135,6 @@ def _calls():
         (dynamics.derive, dict(links=2, gravity=True)),
         (dynamics.derive(2).base_values, dict(links=[LINK, LINK], gravity=9.81)),
         (dynamics.operations_table, dict(joints=[1, 2], link=LINK)),
-        (dynamics.hand_position, dict(arm=PUMA_560, q=np.zeros(6))),
-        (dynamics.inertial_parameters, dict(link=PUMA_560.links[0])),
         (dynamics.locked, dict(arm=dynamics.DD_ARM_II_IN_SPACE, joints=2)),
         (dynamics.mass_matrix, dict(arm=PUMA_560, q=np.zeros(6))),
         (dynamics.regressor, dict(arm=PUMA_560, q=np.zeros(6), qd=np.zeros(6), qdd=np.ones(6))),
@@ -172,9 +170,6 @@ def _calls():
         (effects.StickSlipFriction, dict(level=pair, breakaway=2 * pair, speed=0.02)),
         (effects.StribeckFriction, dict(
             level=pair, breakaway=2 * pair, speed=0.02, smoothing=1e-3
-        )),
-        (effects.LuGreFriction, dict(
-            level=pair, breakaway=2 * pair, speed=0.02, stiffness=pair, damping=pair
         )),
         (effects.ViscousFriction, dict(coefficient=pair)),
         (effects.Backlash, dict(gap=pair)),
@@ -217,9 +212,6 @@ def _calls():
         (simulation.follow, dict(
             arm=ARM, controller=PID, reference=REFERENCE, t=T, effects=effects.IDEAL, seed=1,
             log_every=2, velocity="tachometer", start=STATE[:2], duration=3.0,
-        )),
-        (simulation.free_motion, dict(
-            arm=ARM, q=STATE[0], qd=STATE[1], seconds=0.1, step=0.01, effects=effects.IDEAL
         )),
         (simulation.rms, dict(x=STATE, axis=0)),
         (simulation.residual_torque, dict(arm=ARM, recording=simulation.record(

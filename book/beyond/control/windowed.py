@@ -13,7 +13,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from ddlib._check import integer, number, one_of, shaped
-from ddlib.control.controllers import PID, ControlLaw, Controller, Feedforward, as_controller
+from ddlib.control.controllers import PID, ControlLaw, Controller, as_controller
 from ddlib.trajectories import Trajectory
 
 _BETWEEN = ("window", "line", "hold")
@@ -81,23 +81,6 @@ class WindowFeedforward:
         share = (now % stride / stride)[:, None]
         after = torque[..., np.minimum(now // stride + 1, centres - 1), :]
         return before + share * (after - before)
-
-
-@dataclass(frozen=True)
-class PlannedTorque:
-    """Torques of a planned motion by a model of windows, added to a feedback law (Figure 2-1).
-
-    `ddlib.control.Feedforward` does the same for any model; this one knows that a model of windows
-    has a sampling period, and refuses a loop that does not give it.
-    """
-
-    feedforward: WindowFeedforward
-    feedback: Controller
-
-    def start(self, reference: Trajectory, step: float) -> ControlLaw:
-        """The law that follows `reference`, called every `step` s."""
-        self.feedforward.check(step)
-        return Feedforward(self.feedforward, self.feedback).start(reference, step)
 
 
 @dataclass(frozen=True)

@@ -73,12 +73,6 @@ def calibrated(what: str = "inertia", width: int = 21, path: str = "gains") -> M
     return judged(lambda each: _off(each, true), real, text=text)
 
 
-def off_singly(what: str = "inertia", width: int = 21) -> np.ndarray:
-    """The same of each network by itself: how far its worst entry is from the arm's."""
-    entries, true, _ = _entries(what, np.array(row(width)["real"]["gains"]), arm_gains())
-    return np.abs(entries / true - 1).max(-1)
-
-
 def calibrated_networks(width: int = 21, setup: str = JOINT_DAMPING.name) -> Measured:
     """How far the inertia in the networks of Table 4-1 is from the arm's: the worst entry."""
     windows, _ = cases(committed.training(setup), width)
