@@ -157,38 +157,6 @@ def _listed(known) -> str:
     return ", ".join(names)
 
 
-# What a kind of object has, and how messages speak of it
-_KINDS = {
-    "Arm": ("an Arm, with two joints", "inverse_dynamics"),
-    "SerialArm": ("a SerialArm", "links", "joints"),
-    "Link": ("a Link(mass, length, com, inertia)", "mass", "length", "com", "inertia"),
-    "SpatialLink": ("a SpatialLink", "twist_deg", "com", "inertia"),
-    "Effects": ("Effects, as Effects(friction=(ViscousFriction(...),))", "friction_torque"),
-    "PID": ("a PID, as pd(kp, kd) makes it", "kp", "ki", "kd"),
-    "Controller": ("a controller with a start method, as pd(kp, kd) makes it", "start"),
-    "StateSpace": ("a control.StateSpace, as plant(inertia, viscous) makes it", "ninputs", "A"),
-    "LinearSystem": ("a control.StateSpace or control.TransferFunction", "dt", "ninputs"),
-    "System": ("an InterconnectedSystem, as feedforward_system(...) makes it", "ninputs"),
-    "Recording": ("a Recording, as record(...) makes it", "reference", "q", "tau"),
-    "Setup": ("a Setup, like JOINT_DAMPING", "arm", "effects", "controller"),
-    "TrainingSet": ("a TrainingSet", "x", "y", "inputs"),
-    "Weights": ("Weights, of a TorqueModel its weights", "hidden_weights", "output_bias"),
-    "TorqueModel": ("a TorqueModel", "weights", "inputs", "outputs"),
-    "Scaler": ("a Scaler", "scale", "gain"),
-    "Module": ("a torch.nn.Module, like WindowNetwork", "parameters", "forward"),
-    "Equations": ("Equations, of a recording by_modulation(recording)", "regressor", "torque"),
-    "integer": ("an integer", "__index__"),
-    "row of weights": ("a row of weights", "__len__"),
-}
-
-
-def like(name: str, value, kind: str) -> None:
-    """Refuse what has not what a `kind` of object has."""
-    what, *attributes = _KINDS[kind]
-    if not all(hasattr(value, attribute) for attribute in attributes):
-        raise TypeError(f"{name} must be {what}, got {told(value)}")
-
-
 def instance(name: str, value, *kinds: type) -> None:
     """Refuse what is of none of these classes."""
     if not isinstance(value, kinds):
@@ -231,16 +199,6 @@ def mapping(name: str, value) -> None:
         raise TypeError(f"{name} must be a mapping of names, got {told(value)}")
     if not value:
         raise ValueError(f"{name} must hold one item or more, got none")
-
-
-def every(name: str, values, kind: str) -> None:
-    """Refuse what is no series, or a series that holds what is not `like` a kind."""
-    what, *attributes = _KINDS[kind]
-    if isinstance(values, (str, Mapping)) or not hasattr(values, "__iter__"):
-        raise TypeError(f"{name} must be a series, each item {what}, got {told(values)}")
-    for item in values if isinstance(values, (list, tuple)) else ():
-        if isinstance(item, str) or not all(hasattr(item, part) for part in attributes):
-            raise TypeError(f"{name} must hold only what is {what}, got {told(item)}")
 
 
 def pair(name: str, value, low=-np.inf, high=np.inf) -> None:

@@ -13,14 +13,6 @@ from beyond.figures import maps
 from ddlib import figures
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.figures import COLOURS, INK
-from workshop.chapters import (
-    convolution_filters as filters,
-    dynamics,
-    trajectories_and_recording as recording,
-    what_lagrange_euler_leaves_out as left_out,
-    whole_state_space as states,
-    window_networks as windows,
-)
 
 UPON_A_COLOUR = {
     "ranking": "#000000", "hinton": "#ffffff", "hinton_states": "#ffffff",
@@ -128,16 +120,6 @@ REFUSALS = [
     (figures.decomposed, ({}, 0.01), "functions must hold one"),
     (figures.decomposed, (np.ones(11), 0.0), "step must"),
     (maps, (X[:2], {"a": -np.ones((2, 2))}, (), "A."), "errors of 'a' must be positive"),
-    (dynamics.arm_sketch, (ARM, [0.1, BAD]), "q must be finite"),
-    (dynamics.estimates, ({"a": fitted()}, [1.0], ("x", "y"), 5.0), "truth must"),
-    (recording.reached, ({"a": np.full((1, 10, 6), BAD)}, 1.0), r"states\['a'\] must"),
-    (recording.rounding, ([0.0, 0.1, 0.2], [0, 1, BAD], {}), "steps must"),
-    (recording.tied, ({"a": {"b": np.zeros((1, 5, 3))}},), "points of 'b' must"),
-    (left_out.ranking, ({"a": [-1, 1]},), "sizes"),
-    (windows.intervals, ({"a": {"b": {"c": (1, 0, 2)}}}, "x", "A."), "of 'c' must be in order"),
-    (filters.against_nulls, ({"a": {"b": {"c": [[1.0]]}}}, "share", "A."), "of 'b' must"),
-    (filters.by_explained, ({"a": {"b": [BAD]}}, {}, LABELS, "A."), "'b' of 'a' must"),
-    (states._torque_along, (T, given.EXACT, given.EXACT), "predicted must"),
 ]
 
 

@@ -41,7 +41,9 @@ def made() -> dict:
     """What takes a moment to make, by the names of arguments and of classes."""
     pid = control.PID((300.0, 90.0), kd=(60.0, 20.0))
     extents = [[45.0, 45.0], [38.0, 32.0], [5.0, 39.0]]
-    runs = simulation.record(ARM, pid, extents, log_step=0.02, effects=setups.STATE_FEEDBACK.effects)
+    runs = simulation.record(
+        ARM, pid, extents, log_step=0.02, effects=setups.STATE_FEEDBACK.effects
+    )
     data = learning.TrainingSet.from_recording(runs, 7)
     windows, torque = learning.cases(runs, 7)
     nets = learning.Weights.random(2, 7, hidden=3)
@@ -182,7 +184,9 @@ USED = {
     "Feedforward": lambda law: law.start(REFERENCE, 0.02),
     "TorqueModel": lambda model: model.torque(made()["windows"]),
 }
-SIGNED = set("angle com gravity gravity_moments phase posture inertia twist_deg length offset".split())
+SIGNED = set(
+    "angle com gravity gravity_moments phase posture inertia twist_deg length offset".split()
+)
 FREE = {"name", "alt", "label", "x_label", "y_label"}  # texts of which any will do
 
 
@@ -256,13 +260,18 @@ def methods(whole, room) -> list[Call]:
             function = getattr(instance, name)
         else:
             continue
-        found.append(Call(f"{whole.name}.{name}", function, arguments(f"{whole.name}.{name}", function)))
+        found.append(
+            Call(f"{whole.name}.{name}", function, arguments(f"{whole.name}.{name}", function))
+        )
     return [call for call in found if call.arguments]
 
 
 @pytest.mark.parametrize("room", ROOMS)
 def test_every_public_call_has_an_example_that_works(room):
-    without = {c.name: [k for k, x in c.arguments.items() if x is inspect.Parameter.empty] for c in calls(room)}
+    without = {
+        c.name: [k for k, x in c.arguments.items() if x is inspect.Parameter.empty]
+        for c in calls(room)
+    }
     assert not {name: missing for name, missing in without.items() if missing}
     for call in calls(room):
         with warnings.catch_warnings():
@@ -302,7 +311,12 @@ def wrong(name, value, optional) -> list:
     if isinstance(value, np.ndarray):
         return [*kinds, spoilt(value), RAGGED]
     if isinstance(value, Trajectory):
-        return [*kinds, st.just(value[:2]), st.just(value._replace(qdd=value.qdd[..., :1])), spoilt(value.q)]
+        return [
+            *kinds,
+            st.just(value[:2]),
+            st.just(value._replace(qdd=value.qdd[..., :1])),
+            spoilt(value.q),
+        ]
     if value is LABELS:
         return [*kinds, st.just(["a", 1]), st.just(["a"]), RAGGED]
     return [*kinds, st.integers(3, 9), NOT_FINITE, st.just([None]), st.just(["a", "b"])]
