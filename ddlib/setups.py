@@ -9,8 +9,8 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from ddlib import paper
-from ddlib._check import finite_array, instance, integer, number, pair, seed_number, text, told
-from ddlib.control import Controller, pd, proportional
+from ddlib._check import finite_array, instance, integer, number, pair, seed_number, text
+from ddlib.control import Controller, as_controller, pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from ddlib.effects import (
     CMU_DD_ARM_II_EFFECTS,
@@ -71,11 +71,7 @@ class Setup:
 
     def __post_init__(self):
         text("name", self.name)
-        if not callable(getattr(self.controller, "start", self.controller)):
-            raise TypeError(
-                "controller must have a start method, as pd(kp, kd) has, or be a function, got "
-                f"{told(self.controller)}"
-            )
+        as_controller(self.controller)
         instance("arm", self.arm, Arm)
         instance("effects", self.effects, Effects)
         integer("epochs", self.epochs, 1)

@@ -32,12 +32,12 @@ def plant(inertia, viscous, stiffness=0.0) -> control.StateSpace:
     if np.linalg.eigvalsh(inertia).min() <= 0:
         raise ValueError(f"inertia must be positive definite, got {told(inertia)}")
     viscous = np.diag(_per_joint("viscous", viscous, joints))
-    zero, one = np.zeros((joints, joints)), np.eye(joints)
+    zero, identity = np.zeros((joints, joints)), np.eye(joints)
     stiffness = finite_array("stiffness", stiffness)
     if stiffness.shape != zero.shape and (stiffness.ndim or (joints > 1 and stiffness != 0)):
         raise ValueError(f"stiffness must have shape {zero.shape}, got {stiffness.shape}")
     back = (-np.linalg.solve(inertia, x) for x in (zero + stiffness, viscous))
-    A = np.block([[zero, one], [*back]])
+    A = np.block([[zero, identity], [*back]])
     B = np.vstack([zero, np.linalg.inv(inertia)])
     return control.ss(A, B, np.eye(2 * joints), np.zeros((2 * joints, joints)))
 
@@ -109,13 +109,13 @@ def _parts(joints, kp, ki, kd, period, delay):
     integer("delay", delay, 0)
     if period is None and delay:
         raise ValueError(f"delay must be 0 in continuous control, got {delay} periods")
-    zero, one = np.zeros((n, n)), np.eye(n)
+    zero, identity = np.zeros((n, n)), np.eye(n)
     A, B, step, at_once, hold = joints.A, joints.B, ki, zero, zero
     if period is not None:
         number("period", period, 0.0, open_low=True)
         sampled = control.sample_system(joints, period, "zoh")
         # the law adds the newest error to the integral before using it
-        A, B, step, at_once, hold = sampled.A, sampled.B, ki * period, ki * period, one
+        A, B, step, at_once, hold = sampled.A, sampled.B, ki * period, ki * period, identity
     law, size, above = np.hstack([-(kp + at_once), -kd]), 2 * n, n if ki.any() else 0
     integral, waiting = slice(size, size + above), size + above
     total = waiting + n * delay
@@ -125,11 +125,11 @@ def _parts(joints, kp, ki, kd, period, delay):
     F[:size, :size], torque[:size], of_law[:, :size] = A, B, law
     if above:
         F[integral, :n], F[integral, integral] = -step, hold
-        of_law[:, integral], reference[integral] = one, step
+        of_law[:, integral], reference[integral] = identity, step
     if delay:  # v enters the queue at its end and acts when it has reached the front
         F[:size, waiting : waiting + n] = B
         F[waiting : total - n, waiting + n :] = np.eye(total - n - waiting)
-        command[total - n :] = one
+        command[total - n :] = identity
     else:
         command[:size] = B
     return F, command, torque, of_law, (kp + at_once, reference)

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddlib._check import filled, finite_array, integer, number, series, shaped, told
-from ddlib.control.controllers import ControlLaw, Controller
+from ddlib._check import filled, finite_array, integer, number, series, shaped
+from ddlib.control.controllers import ControlLaw, Controller, as_controller
 from ddlib.trajectories import Trajectory
 
 
@@ -56,11 +56,7 @@ class EstimatedVelocity:
     weights: tuple  #: Of the estimate, oldest reading first, (width,) or (runs, width).
 
     def __post_init__(self):
-        if not hasattr(self.feedback, "start"):
-            raise TypeError(
-                "feedback must have a start method, as pd(kp, kd) makes it, got "
-                f"{told(self.feedback)}"
-            )
+        as_controller(self.feedback, "feedback")
         filled("weights", self.weights)
         if finite_array("weights", self.weights).ndim == 0:
             raise ValueError(f"weights must have shape (..., width), got {self.weights}")
@@ -68,7 +64,7 @@ class EstimatedVelocity:
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
         """The law that follows `reference`, called every `step` s."""
         weights = np.asarray(self.weights, dtype=float)[..., None]
-        law, past = self.feedback.start(reference, step), None
+        law, past = as_controller(self.feedback).start(reference, step), None
 
         def estimated(k, q, qd):
             nonlocal past

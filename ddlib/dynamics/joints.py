@@ -22,9 +22,9 @@ def mass_matrix(arm: SerialArm, q) -> np.ndarray:
     """
     instance("arm", arm, SerialArm)
     q = finite_array("q", q, arm.joints)
-    weightless, one = SerialArm(arm.links), np.eye(arm.joints)
+    weightless, identity = SerialArm(arm.links), np.eye(arm.joints)
     rest = np.zeros_like(q)
-    columns = [weightless.inverse_dynamics(q, rest, rest + row) for row in one]
+    columns = [weightless.inverse_dynamics(q, rest, rest + row) for row in identity]
     return np.stack(columns, -1)
 
 
@@ -148,14 +148,14 @@ def _arm_in_space() -> SerialArm:
     middle = ends - length / 2
     own = mass * gyration**2
     whole, centre, inertia = 14.0, 0.09, 0.60  # of the forearm of `CMU_DD_ARM_II`
-    left = float(whole - mass.sum())
-    com = float((whole * centre - mass @ middle) / left)
+    own_mass = float(whole - mass.sum())
+    com = float((whole * centre - mass @ middle) / own_mass)
     about_axis = inertia + whole * centre**2 - (own + mass * middle**2).sum()
-    about_com = about_axis - left * com**2
+    about_com = about_axis - own_mass * com**2
     twists = (-90.0, 90.0, -90.0, 90.0, 0.0)
     first = SpatialLink(0.0, 0.50, 0.0, 14.0, (0.22 - 0.50, 0.0, 0.0), np.diag([0, 0, 0.40]))
     place = com - to_third_axis, 0.0, 0.0
-    second = SpatialLink(90.0, to_third_axis, 0.0, left, place, np.eye(3) * about_com)
+    second = SpatialLink(90.0, to_third_axis, 0.0, own_mass, place, np.eye(3) * about_com)
     rest = [
         SpatialLink(twist, a, 0.0, m, (-a / 2, 0.0, 0.0), np.eye(3) * i)
         for twist, a, m, i in zip(twists, length, mass, own)

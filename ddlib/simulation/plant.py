@@ -146,8 +146,8 @@ class Plant:
         holds = (np.abs(inside) <= limit).all(-1, keepdims=True)
         best = np.where(holds, inside, best)
         broken = ~holds & (np.abs(best) >= limit) & resting
-        left = a - (B @ best[..., None])[..., 0]
-        return np.where(broken, np.sign(np.where(limit > 0, best, left)), way)
+        driving = a - (B @ best[..., None])[..., 0]
+        return np.where(broken, np.sign(np.where(limit > 0, best, driving)), way)
 
 
 def _rk4(acceleration, x, v, step):

@@ -180,14 +180,3 @@ def test_torque_is_linear_in_ten_parameters_of_each_link(name):
 
 
 # --- shapes and refusals ----------------------------------------------------------------
-
-
-def test_refusals():
-    good = dict(twist_deg=0.0, length=1.0, offset=0.0, mass=1.0, com=(0, 0, 0), inertia=np.eye(3))
-    for name, bad in (("mass", -1.0), ("com", (0.0, 0.0)), ("inertia", np.triu(np.ones((3, 3))))):
-        with pytest.raises(ValueError, match=f"^{name} must"):
-            SpatialLink(**{**good, name: bad})
-    with pytest.raises(ValueError, match="arm must have its hand on the x axis of link 3"):
-        locked(PUMA_560, 3)
-    with pytest.raises(ValueError, match="q must have a last"):
-        PUMA_560.inverse_dynamics([0.0, 1.0], REST, REST)

@@ -8,10 +8,9 @@ from hypothesis import given, settings, strategies as st
 from scipy.integrate import simpson
 
 from ddlib.control import ComputedTorque, pd, proportional
-from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, PUMA_560, REYES_KELLY_ARM
+from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM
 from ddlib.effects import (
     IDEAL,
-    ComputingTime,
     CoulombFriction,
     Effects,
     Noise,
@@ -132,27 +131,3 @@ def test_divergence_is_reported_and_nothing_else(arm):
             warnings.simplefilter("error")
             with pytest.raises(ValueError, match=r"loop diverges.*lower the gains"):
                 record(arm, controller, (45.0, 45.0), rest=0.1)
-
-
-def test_refusals():
-    reference = Trajectory(*np.zeros((3, 3, 3, 2)))  # three runs of three samples
-    built = dict(arm=ARM, controller=PD, reference=reference, t=[0.0, 0.1, 0.2], log_every=1)
-    planned = dict(arm=ARM, controller=PD, extents_deg=(45.0, 45.0))
-    late = Effects(actuator=(ComputingTime(0.1),))
-    for call, good, words, change in (
-        (record, planned, "log_step must be a multiple of control_step", dict(log_step=0.003)),
-        (record, planned, "rest must be a multiple of log_step", dict(rest=0.502)),
-        (record, planned, "velocity must be one of 'tachometer'", dict(velocity="measured")),
-        (record, planned, "extents_deg", dict(extents_deg=(45.0, np.nan))),
-        (record, planned, "controller must return torques", dict(controller=lambda *_: 3.0)),
-        (follow, built, "t must", dict(t=[0.0, 0.1, 0.3])),
-        (follow, built, r"reference\.q must", dict(reference=reference._replace(q=[[0.0] * 3]))),
-        (follow, built, "start must fit to the runs", dict(start=(np.zeros((4, 2)), np.zeros(2)))),
-        (follow, built, "computing time below the control", dict(effects=late)),
-        (follow, built, "seed must", dict(effects=SENSORS, seed=[0, 1])),
-        (follow, built, "controller must have a start method", dict(controller="PD")),
-        (follow, built, "arm must be an Arm, .* got SerialArm", dict(arm=PUMA_560)),
-        (follow, built, "effects must be Effects with", dict(effects=FRICTION[0])),
-    ):
-        with pytest.raises((ValueError, TypeError), match=words):
-            call(**{**good, **change})
