@@ -154,12 +154,12 @@ EXAMPLES = {
     "torque_along": partial(states._torque_along, T, EXACT, NETWORKS),
 
     "courses": partial(
-        adaptive_control._courses,
+        adaptive_control.courses,
         {"A": {"one": ERRORS, "two": 2 * ERRORS}, "B": {"one": ERRORS, "two": ERRORS}},
         2, "a load", "error, mm", "Two.",
     ),
     "stops_map": partial(
-        adaptive_control._stops_map, [0.1, 1.0, 10.0], [0, 2],
+        adaptive_control.stops_map, [0.1, 1.0, 10.0], [0, 2],
         {"A": (np.where(STOPPED, np.inf, 1.0), STOPPED)}, ("rate", "delay, ms", "error, mm"),
         "A map with a cross.",
     ),
@@ -184,11 +184,11 @@ EXAMPLES = {
     "parity": rivals.parity_drawn,
     "units at work": global_view.at_work,
     "against": partial(
-        run_time._against,
+        run_time.against,
         {"RMSS": MEMBERS, "loop, mm": {"21": (np.ones(2) * 5, np.ones(2) * 6)}}, "error, mm",
         "Two predictors.", ("loop, mm",),
     ),
-    "verdicts": partial(verdict._sections, {"section 2": {"reproduced": 3, "refuted": 1}}),
+    "verdicts": partial(verdict.sections_figure, {"section 2": {"reproduced": 3, "refuted": 1}}),
     "maps": partial(maps, EDGE, SQUARES, ("x, °", "y, °", "error"), "Maps.", mark=(20.0, 30.0)),
 }  # fmt: skip
 
