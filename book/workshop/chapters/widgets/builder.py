@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
-from ddlib._check import like, shaped
+from ddlib._check import instance, shaped
 from ddlib.analysis import frequency_response, savitzky_golay
 from ddlib.learning import sliding_windows
 from ddlib.metrics import rmss
@@ -127,7 +127,7 @@ class FilterBuilder(PageWidget):
 
     def __init__(self, unit, setup: Setup = JOINT_DAMPING):
         unit = shaped("unit", unit, (_WIDTH,))
-        like("setup", setup, "Setup")
+        instance("setup", setup, Setup)
         q, truth, step = readings(setup)
         time = np.arange(truth.size) * LOG_STEP
         most = 1.25 * np.abs(truth).max()

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
-from ddlib._check import like
+from ddlib._check import instance
 from ddlib.control import Feedforward, proportional
 from ddlib.dynamics import Arm
 from ddlib.effects import CoulombFriction, Effects, ViscousFriction
@@ -76,7 +76,7 @@ class FeedforwardSwitches(CurveWidget):
     loop = t.Dict(help="plant, gains and references", read_only=True).tag(sync=True)
 
     def __init__(self, arm: Arm = JOINT_DAMPING.arm, **options):
-        like("arm", arm, "Arm")
+        instance("arm", arm, Arm)
         self._arm = arm
         super().__init__(
             lambda **setting: _kept(arm, **setting),

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
-from ddlib._check import filled, like, shaped
+from ddlib._check import filled, instance, shaped
 from ddlib.dynamics import with_load
 from ddlib.effects import Effects
 from ddlib.figures import JOINTS
@@ -64,7 +64,7 @@ class TorqueTerms(CurveWidget):
     moving = t.Dict(help="arms by load, friction, extents in rad", read_only=True).tag(sync=True)
 
     def __init__(self, setup: Setup = JOINT_DAMPING, extents_deg=APPENDIX_I, **options):
-        like("setup", setup, "Setup")
+        instance("setup", setup, Setup)
         extents_deg = shaped("extents_deg", extents_deg, "(runs, 2)")
         filled("extents_deg", extents_deg)
         if any(setup.arm.gravity_moments):

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
-from ddlib._check import like
+from ddlib._check import instance
 from ddlib.analysis import basis, shares
 from ddlib.figures import COLOURS, DASHES, FAINT, INK, JOINTS, illustrate
 from ddlib.learning import TorqueModel
@@ -59,8 +59,8 @@ class ThrownArm(PageWidget):
     weights = t.Bytes(help="the network's weights as float32", read_only=True).tag(sync=True)
 
     def __init__(self, model: TorqueModel, setup: Setup = JOINT_DAMPING, *, code: str = ""):
-        like("model", model, "TorqueModel")
-        like("setup", setup, "Setup")
+        instance("model", model, TorqueModel)
+        instance("setup", setup, Setup)
         layout = network(model)
         if model.step is not None and abs(model.step / LOG_STEP - 1) > 1e-6:
             raise ValueError(

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
-from ddlib._check import like, one_of
+from ddlib._check import instance, one_of
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from ddlib.effects import Effects, ViscousFriction
 from ddlib.figures import JOINTS
@@ -178,7 +178,7 @@ class PIDTuner(CurveWidget):
     loop = t.Dict(help="plant, modes, reference and questions", read_only=True).tag(sync=True)
 
     def __init__(self, arm: Arm = CMU_DD_ARM_II, **options):
-        like("arm", arm, "Arm")
+        instance("arm", arm, Arm)
         self._arm = arm
         milliseconds = {n: f"{1e3 * CONTROL_STEP * n:g} ms" for n in _LATE}
         super().__init__(

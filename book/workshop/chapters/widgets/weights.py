@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.gridspec import GridSpec
 from matplotlib.patches import Rectangle
 
-from ddlib._check import like
+from ddlib._check import instance
 from ddlib.analysis import roughness
 from ddlib.figures import COLOURS, illustrate
 from ddlib.figures.weights import dots, hinton_on, relative_weights
@@ -61,8 +61,8 @@ class WeightReader(_HintonWidget):
         joint: str = JOINTS[0],
         **options,
     ):
-        like("start", start, "Weights")
-        like("trained", trained, "Weights")
+        instance("start", start, Weights)
+        instance("trained", trained, Weights)
         shapes = [[getattr(w, f.name).shape for f in fields(Weights)] for w in (start, trained)]
         if shapes[0] != shapes[1] or trained.hidden_bias.ndim != 1:
             raise ValueError(f"start and trained must be one network, got {start!r}, {trained!r}")

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
-from ddlib._check import finite_array, like
+from ddlib._check import finite_array, instance
 from ddlib.learning import TorqueModel, sliding_windows
 from ddlib.learning.windows import check_width
 from ddlib.simulation import Recording
@@ -54,7 +54,7 @@ class SlidingWindow(CurveWidget):
         first: int | None = None,
         **options,
     ):
-        like("recording", recording, "Recording")
+        instance("recording", recording, Recording)
         finite_array("recording.q", recording.q, 2)
         if recording.q.ndim != 2:
             raise ValueError(f"recording must be one run, got shape {recording.q.shape}")
@@ -182,7 +182,7 @@ class HiddenTorque(CurveWidget):
     recorded.tag(sync=True)
 
     def __init__(self, recording: Recording, width: int = 21, **options):
-        like("recording", recording, "Recording")
+        instance("recording", recording, Recording)
         finite_array("recording.q", recording.q, 2)
         if recording.q.ndim != 2:
             raise ValueError(f"recording must be one run, got shape {recording.q.shape}")
