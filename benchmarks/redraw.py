@@ -173,20 +173,20 @@ def opening(browser, url: str) -> float:
 def of_widget(widget, name: str, moves: int = MOVES) -> list[dict]:
     """The rows of one mounted widget, a Playwright locator of an open page."""
     widget.scroll_into_view_if_needed()
-    found = []
+    measured = []
     for kind, selector in KINDS.items():
         if not widget.locator(selector).locator("visible=true").count():
             continue
         element = widget.element_handle()
         times = widget.page.evaluate(MEASURE, [element, kind, WARM_UP + moves])[WARM_UP:]
-        found.append(
+        measured.append(
             {
                 "what": f"redraw, {name}, {kind}",
                 "median, ms": float(np.median(times)),
                 "p95, ms": float(np.percentile(times, 95)),
             }
         )
-    return found
+    return measured
 
 
 if __name__ == "__main__":

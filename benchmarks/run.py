@@ -127,9 +127,9 @@ def main() -> None:
             parser.error(f"parts must be among {', '.join(PARTS)}, got {name!r}")
     rows, failed, here, started = [], [], machine(), time.monotonic()
     for name in options.parts or PARTS:
-        found = run(name)
-        failed += [name] * (found is None)
-        for row in found or ():
+        measured = run(name)
+        failed += [name] * (measured is None)
+        for row in measured or ():
             rows.append(row)
             print(text(row), flush=True)
     if failed:

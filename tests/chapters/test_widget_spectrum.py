@@ -70,9 +70,9 @@ def test_curves_are_those_of_the_study(widget, study, along):
             np.testing.assert_allclose(shown[f"{joint} shape"], np.pad(f, zeros), atol=2e-4)
         for who in _WHO:
             change = np.array(cell[who]["change over start"])[1:, k]
-            kept = np.maximum(np.log10(change), _FLOOR)
-            np.testing.assert_allclose(shown[f"change {who}"], kept, atol=2e-3)
-            assert shown[f"now {who}"][0] == pytest.approx(kept[row - 1], abs=2e-3)
+            logs = np.maximum(np.log10(change), _FLOOR)
+            np.testing.assert_allclose(shown[f"change {who}"], logs, atol=2e-3)
+            assert shown[f"now {who}"][0] == pytest.approx(logs[row - 1], abs=2e-3)
             error = np.array(cell[who]["error"])[1:, k]
             np.testing.assert_allclose(shown[f"error {who}"], error, atol=2e-4)
         assert shown["variance"][0] == pytest.approx(-2 * k, abs=2e-3)

@@ -8,9 +8,7 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
-from ddlib._check import like
 from ddlib.control import Feedforward, proportional
-from ddlib.dynamics import Arm
 from ddlib.effects import CoulombFriction, Effects, ViscousFriction
 from ddlib.figures import JOINTS
 from ddlib.setups import (
@@ -36,6 +34,7 @@ from ddlib.widgets.table import Live
 
 _HERE = Path(__file__).parent
 
+_ARM = JOINT_DAMPING.arm
 _EXTENTS = APPENDIX_I[0]  # degrees: 45 and 45
 _FRICTION = Effects(
     friction=(ViscousFriction(JOINT_DAMPING_VISCOUS), CoulombFriction(JOINT_DAMPING_COULOMB))
@@ -64,8 +63,6 @@ class FeedforwardSwitches(CurveWidget):
 
     Parameters
     ----------
-    arm : Arm
-        The arm that moves.
     **options
         Passed on to `CurveWidget`.
     """
@@ -75,11 +72,9 @@ class FeedforwardSwitches(CurveWidget):
 
     loop = t.Dict(help="plant, gains and references", read_only=True).tag(sync=True)
 
-    def __init__(self, arm: Arm = JOINT_DAMPING.arm, **options):
-        like("arm", arm, "Arm")
-        self._arm = arm
+    def __init__(self, **options):
         super().__init__(
-            lambda **setting: _kept(arm, **setting),
+            _switched,
             [
                 Choice("model", "Model of the arm", _SWITCH, False, "switch"),
                 Parameter("masses", "Masses of the model", 0, 200, 100, "% of the arm's"),
@@ -119,7 +114,7 @@ class FeedforwardSwitches(CurveWidget):
             **options,
         )
         loop = {
-            "plant": plant(arm, _FRICTION),
+            "plant": plant(_ARM, _FRICTION),
             "gains": gains(proportional(KP)),
             "extents": np.deg2rad(_EXTENTS).tolist(),
             "motion": MOTION_SECONDS,
@@ -136,24 +131,20 @@ def _reference(jump: bool) -> Trajectory:
 
 
 @lru_cache(maxsize=32)
-def _kept(arm: Arm, **setting) -> dict:
-    return switched(arm, **setting)
-
-
-def switched(arm: Arm, model, masses, known, feedback, friction, jump) -> dict:
+def _switched(model, masses, known, feedback, friction, jump) -> dict:
     """Curves and numbers of one setting, by ddlib's simulator: degrees, N m."""
     reference = _reference(jump)
     ahead = np.zeros_like(reference.q)
     if model:
         q, qd, qdd = reference
-        ahead = (masses / 100) * arm.inverse_dynamics(q, qd, qdd)
+        ahead = (masses / 100) * _ARM.inverse_dynamics(q, qd, qdd)
         if known:
             ahead = ahead + _FRICTION.friction_torque(qd)
     effects = _FRICTION if friction else Effects()
 
     def drive(torque, gain):
         law = Feedforward(lambda *motion: torque, proportional(gain))
-        return follow(arm, law, reference, _T, effects=effects, log_every=_EVERY)
+        return follow(_ARM, law, reference, _T, effects=effects, log_every=_EVERY)
 
     run = drive(ahead, KP if feedback else (0.0, 0.0))
     alone = np.rad2deg(drive(0 * ahead, KP).tracking_error)

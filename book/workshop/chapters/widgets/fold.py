@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
-from ddlib._check import integer, number, shaped, told
 from ddlib.analysis import decompose
 from ddlib.widgets.base import CurveWidget, Panel
 from ddlib.widgets.hinton import CENTRE
@@ -43,17 +42,10 @@ class FilterFold(CurveWidget):
     folding.tag(sync=True)
 
     def __init__(self, rows: Mapping[str, np.ndarray], step: float, **options):
-        number("step", step, 0.0, open_low=True)
-        if not isinstance(rows, Mapping) or len(rows) < 2:
-            raise TypeError(f"rows must map two labels or more to weights, got {told(rows)}")
-        some = shaped("rows", next(iter(rows.values())), "(width,)")
-        integer("samples of rows", some.size, 3)
-        self._rows = {str(label): shaped(f"rows[{label!r}]", f, some.shape)
-                      for label, f in rows.items()}  # fmt: skip
-        half = some.size // 2
+        self._parts = {label: self._taken_apart(f) for label, f in rows.items()}
+        labels = list(rows)
+        half = len(rows[labels[0]]) // 2
         self._time = time = np.arange(-half, half + 1) * step
-        self._parts = {label: self._taken_apart(f) for label, f in self._rows.items()}
-        labels = list(self._rows)
         whole = {"y_range": ("least weight", "most weight")}
         names, ends = [*_PARTS, "all"], ("least answer", "most answer")
         ms = 1e3 * time

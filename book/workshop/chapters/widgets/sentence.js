@@ -1,4 +1,4 @@
-// Shows a LiveSentence (engine/sentence.py): numbers to drag or to step, and an end that is computed.
+// Shows a LiveSentence (sentence.py): numbers to drag or to step, and an end that is computed.
 
 import { buttonOf, dress, make, onKeys, put, write } from "ddlib/elements.js";
 import { filled, frameOf, python } from "ddlib/frame.js";

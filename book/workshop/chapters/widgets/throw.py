@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
-from ddlib._check import like
 from ddlib.analysis import basis, shares
 from ddlib.figures import COLOURS, DASHES, FAINT, INK, JOINTS, illustrate
 from ddlib.learning import TorqueModel
@@ -59,13 +58,6 @@ class ThrownArm(PageWidget):
     weights = t.Bytes(help="the network's weights as float32", read_only=True).tag(sync=True)
 
     def __init__(self, model: TorqueModel, setup: Setup = JOINT_DAMPING, *, code: str = ""):
-        like("model", model, "TorqueModel")
-        like("setup", setup, "Setup")
-        layout = network(model)
-        if model.step is not None and abs(model.step / LOG_STEP - 1) > 1e-6:
-            raise ValueError(
-                f"model must have the log's sampling period of {LOG_STEP:g} s, got {model.step:g} s"
-            )
         order = [TEST_TRAJECTORY, *(k for k in range(1, 7) if k != TEST_TRAJECTORY)]
         span = np.maximum(-model.outputs.low, model.outputs.high)
         still, alt = _still(model, setup)
@@ -75,7 +67,7 @@ class ThrownArm(PageWidget):
             "code": code,
             "plant": plant(setup.arm, setup.effects),
             "gains": gains(setup.controller),
-            "network": layout,
+            "network": network(model),
             "step": CONTROL_STEP,
             "every": round(LOG_STEP / CONTROL_STEP),
             "motion": MOTION_SECONDS,

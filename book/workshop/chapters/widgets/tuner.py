@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
-from ddlib._check import like, one_of
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from ddlib.effects import Effects, ViscousFriction
 from ddlib.figures import JOINTS
@@ -68,8 +67,13 @@ class _Question:
 
     def description(self) -> dict:
         """What the page needs to know."""
-        told = {"text": self.text, "choices": list(self.choices), "right": self.right}
-        return {**told, "why": self.why, "settings": list(self.settings)}
+        return {
+            "text": self.text,
+            "choices": list(self.choices),
+            "right": self.right,
+            "why": self.why,
+            "settings": list(self.settings),
+        }
 
 
 _KINDS = (
@@ -165,8 +169,6 @@ class PIDTuner(CurveWidget):
 
     Parameters
     ----------
-    arm : Arm
-        The arm that moves.
     **options
         Passed on to `CurveWidget`.
     """
@@ -177,9 +179,7 @@ class PIDTuner(CurveWidget):
     before = t.Dict(help="the setting before this one, which the ghost has").tag(sync=True)
     loop = t.Dict(help="plant, modes, reference and questions", read_only=True).tag(sync=True)
 
-    def __init__(self, arm: Arm = CMU_DD_ARM_II, **options):
-        like("arm", arm, "Arm")
-        self._arm = arm
+    def __init__(self, **options):
         milliseconds = {n: f"{1e3 * CONTROL_STEP * n:g} ms" for n in _LATE}
         super().__init__(
             self._both,
@@ -218,8 +218,8 @@ class PIDTuner(CurveWidget):
         )
         effects = Effects(friction=(ViscousFriction(_VISCOUS),))
         loop = {
-            "plant": plant(arm, effects),
-            "modes": modes(arm, _VISCOUS),
+            "plant": plant(CMU_DD_ARM_II, effects),
+            "modes": modes(CMU_DD_ARM_II, _VISCOUS),
             "elbow": _ELBOW,
             "extents": np.deg2rad(APPENDIX_I[TEST_TRAJECTORY - 1]).tolist(),
             "motion": MOTION_SECONDS,
@@ -231,24 +231,17 @@ class PIDTuner(CurveWidget):
         }
         self._keep(before=self.values, loop=loop)
 
-    @t.validate("before")
-    def _checked_before(self, proposal):
-        for name, value in proposal["value"].items():
-            one_of("parameter of before", name, tuple(self._parameters))
-            self._parameters[name].check(value)
-        return proposal["value"]
-
     def _both(self, **setting) -> dict:
         """The curves of a setting, and of the one before."""
-        now = _kept(self._arm, **setting)
-        old = _kept(self._arm, **{**setting, **self.before})
+        now = _remembered(**setting)
+        old = _remembered(**{**setting, **self.before})
         ghost = {f"{name} before": x for name, x in old.items() if np.size(x) > 1}
         return {**ghost, **{name: x for name, x in now.items() if name != "stopped"}}
 
 
 @lru_cache(maxsize=32)
-def _kept(arm: Arm, **setting) -> dict:
-    return tuned(arm, **setting)
+def _remembered(**setting) -> dict:
+    return tuned(CMU_DD_ARM_II, **setting)
 
 
 def _gains(kp, ki, kd) -> dict[str, np.ndarray]:

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ddlib._check import shaped
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.hinton import CENTRE
@@ -39,12 +38,7 @@ class WeighTheArm(CurveWidget):
     ):
         names = list(gradients)
         width = np.shape(gradients[names[0]])[-1]
-        self._gradients = {
-            name: shaped(f"gradient of {name!r}", g, (2, 2, width)) for name, g in gradients.items()
-        }
-        self._inertia = {
-            name: shaped(f"inertia of {name!r}", inertia[name], (2, 2)) for name in names
-        }
+        self._gradients, self._inertia = gradients, inertia
         self._x = (np.arange(width) - width // 2) * LOG_STEP
         reaches = range(1, width // 2 + 1)
         time = 1e3 * self._x

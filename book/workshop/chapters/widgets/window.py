@@ -8,9 +8,7 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
-from ddlib._check import finite_array, like
 from ddlib.learning import TorqueModel, sliding_windows
-from ddlib.learning.windows import check_width
 from ddlib.simulation import Recording
 from ddlib.widgets.base import CurveWidget, Panel, Scalar
 from ddlib.widgets.engine._plain import networks
@@ -54,8 +52,6 @@ class SlidingWindow(CurveWidget):
         first: int | None = None,
         **options,
     ):
-        like("recording", recording, "Recording")
-        finite_array("recording.q", recording.q, 2)
         if recording.q.ndim != 2:
             raise ValueError(f"recording must be one run, got shape {recording.q.shape}")
         models = _check_models(models, 0)
@@ -182,11 +178,6 @@ class HiddenTorque(CurveWidget):
     recorded.tag(sync=True)
 
     def __init__(self, recording: Recording, width: int = 21, **options):
-        like("recording", recording, "Recording")
-        finite_array("recording.q", recording.q, 2)
-        if recording.q.ndim != 2:
-            raise ValueError(f"recording must be one run, got shape {recording.q.shape}")
-        check_width(width)
         self._step = recording.step
         self._half, self._time = width // 2, recording.t[recording.motion]
         self._windows = np.degrees(sliding_windows(recording.q, width, recording.motion))
