@@ -60,11 +60,6 @@ class FeedforwardSwitches(CurveWidget):
     The arm goes out and back as far as trajectory 1, from rest to rest or with the jump of velocity
     of the report's motions, under the springs of `ddlib.setups.JOINT_DAMPING`; sensors are exact.
     The page computes every setting by the live engine.
-
-    Parameters
-    ----------
-    **options
-        Passed on to `CurveWidget`.
     """
 
     _esm = bundle(_HERE / "feedforward.js")
@@ -72,7 +67,7 @@ class FeedforwardSwitches(CurveWidget):
 
     loop = t.Dict(help="plant, gains and references", read_only=True).tag(sync=True)
 
-    def __init__(self, **options):
+    def __init__(self):
         super().__init__(
             _switched,
             [
@@ -111,7 +106,6 @@ class FeedforwardSwitches(CurveWidget):
             ],
             code=_CODE,
             note="A thick arrow carries much of the shoulder's torque (root mean square).",
-            **options,
         )
         loop = {
             "plant": plant(_ARM, _FRICTION),

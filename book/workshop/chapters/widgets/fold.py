@@ -32,8 +32,6 @@ class FilterFold(CurveWidget):
         odd width.
     step : float
         Sampling period of the rows, s; `ddlib.simulation.LOG_STEP` of the book's recordings.
-    **options
-        Passed on to `CurveWidget`.
     """
 
     _esm = bundle(_HERE / "fold.js")
@@ -41,7 +39,7 @@ class FilterFold(CurveWidget):
     folding = t.Dict(help="time of the samples, parts and axes of rows", read_only=True)
     folding.tag(sync=True)
 
-    def __init__(self, rows: Mapping[str, np.ndarray], step: float, **options):
+    def __init__(self, rows: Mapping[str, np.ndarray], step: float):
         self._parts = {label: self._taken_apart(f) for label, f in rows.items()}
         labels = list(rows)
         half = len(rows[labels[0]]) // 2
@@ -87,7 +85,6 @@ class FilterFold(CurveWidget):
             live=Live(examples=[dict(zip(("row", "fold", *motion), x)) for x in product(
                 labels, (0, 100), *((-x, x) for x in (_ANGLE, _SPEED, _ACCELERATION))
             )]),
-            **options,
         )  # fmt: skip
         folding = {
             label: {"parts": parts.tolist(), "ends": self._ends(parts)}

@@ -46,11 +46,6 @@ class TorqueTerms(CurveWidget):
 
     The curves have letters until the reader has guessed which term is the elbow's largest. The
     page computes all of it by the live engine. The motion is the reference itself: no controller.
-
-    Parameters
-    ----------
-    **options
-        Passed on to `CurveWidget`.
     """
 
     _esm = bundle(_HERE / "terms.js")
@@ -58,7 +53,7 @@ class TorqueTerms(CurveWidget):
 
     moving = t.Dict(help="arms by load, friction, extents in rad", read_only=True).tag(sync=True)
 
-    def __init__(self, **options):
+    def __init__(self):
         self._arms = {load: with_load(JOINT_DAMPING.arm, load) for load in _LOADS}
         self._effects = Effects(friction=JOINT_DAMPING.effects.friction)
         motions = {
@@ -101,7 +96,7 @@ class TorqueTerms(CurveWidget):
                     {"doubled": True, "friction": True},
                 ]
             ),
-            **{"code": _CODE, **options},
+            code=_CODE,
         )
         given = plant(JOINT_DAMPING.arm, self._effects)
         self._keep(

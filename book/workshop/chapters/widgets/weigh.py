@@ -29,13 +29,9 @@ class WeighTheArm(CurveWidget):
         ``(torque, joint, samples)``.
     inertia : mapping
         The same names -> mean mass matrix that belongs to it, kg m², shape (2, 2).
-    **options
-        Passed on to `CurveWidget`.
     """
 
-    def __init__(
-        self, gradients: Mapping[str, np.ndarray], inertia: Mapping[str, np.ndarray], **options
-    ):
+    def __init__(self, gradients: Mapping[str, np.ndarray], inertia: Mapping[str, np.ndarray]):
         names = list(gradients)
         width = np.shape(gradients[names[0]])[-1]
         self._gradients, self._inertia = gradients, inertia
@@ -69,18 +65,15 @@ class WeighTheArm(CurveWidget):
                     cursor=("none", "place"), y_fit=True,
                 ),
             ],
-            **{
-                "alt": "Stems: the gradient of the shoulder's torque by its window. Bars: how much "
-                "each sample adds to its second moment. A line: the sum over more and more "
-                "samples, beside the arm's own inertia.",
-                "title": "Weigh the arm",
-                "scalars": [
-                    Scalar("now", "Sum", "kg m²", 2),
-                    Scalar("true", "The arm's own", "kg m²", 2),
-                ],
-                "note": "Shaded: the samples that are added up so far.",
-                **options,
-            },
+            alt="Stems: the gradient of the shoulder's torque by its window. Bars: how much "
+            "each sample adds to its second moment. A line: the sum over more and more "
+            "samples, beside the arm's own inertia.",
+            title="Weigh the arm",
+            scalars=[
+                Scalar("now", "Sum", "kg m²", 2),
+                Scalar("true", "The arm's own", "kg m²", 2),
+            ],
+            note="Shaded: the samples that are added up so far.",
         )  # fmt: skip
 
     def _curves(self, reach, learnt, entry) -> dict:

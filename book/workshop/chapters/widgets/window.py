@@ -34,8 +34,6 @@ class SlidingWindow(CurveWidget):
         One run, with rests long enough for the largest window.
     first : int, optional
         The window size that is shown first. Default: the middle one.
-    **options
-        Passed on to `CurveWidget`.
     """
 
     _esm = bundle(_HERE / "window.js")
@@ -50,7 +48,6 @@ class SlidingWindow(CurveWidget):
         models: Mapping[int, TorqueModel],
         recording: Recording,
         first: int | None = None,
-        **options,
     ):
         if recording.q.ndim != 2:
             raise ValueError(f"recording must be one run, got shape {recording.q.shape}")
@@ -122,7 +119,6 @@ class SlidingWindow(CurveWidget):
                 for what in ("network", "measured")
             ],
             live=Live(ranges=self._ranges()),
-            **options,
         )
         layouts, weights = networks(models.values())
         whole = slice(recording.motion.start - reach, recording.motion.stop + reach)
@@ -168,8 +164,6 @@ class HiddenTorque(CurveWidget):
         One run, with rests long enough for the window.
     width : int
         Samples of the window, odd.
-    **options
-        Passed on to `CurveWidget`.
     """
 
     _esm = bundle(_HERE / "hidden.js")
@@ -177,7 +171,7 @@ class HiddenTorque(CurveWidget):
     recorded = t.Bytes(help="positions with half a window on either side, torques", read_only=True)
     recorded.tag(sync=True)
 
-    def __init__(self, recording: Recording, width: int = 21, **options):
+    def __init__(self, recording: Recording, width: int = 21):
         self._step = recording.step
         self._half, self._time = width // 2, recording.t[recording.motion]
         self._windows = np.degrees(sliding_windows(recording.q, width, recording.motion))
@@ -217,7 +211,6 @@ class HiddenTorque(CurveWidget):
                     for k in (0, len(self._time) - 1)
                 ]
             ),
-            **options,
         )
         motion, half = recording.motion, self._half
         parts = recording.q[motion.start - half : motion.stop + half].T.ravel(), self._torque.T
