@@ -8,8 +8,17 @@ PYTHON ?= python3
 VENV   ?= .venv
 JOBS   ?= 2
 
+# On Linux PyPI's PyTorch is the CUDA build, some 5 GB more: TORCH=cuda takes it.
+TORCH  ?= cpu
+
 BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
+TESTED := $(VENV)/.tested
+PIP     = $(BIN)/python -m pip install --disable-pip-version-check
+LIMITS := "torch>=2.5,<2.14"
+ifeq ($(shell uname -s) $(TORCH),Linux cpu)
+CPU_BUILD := --index-url https://download.pytorch.org/whl/cpu --retries 1 --timeout 15
+endif
 STRIP  := $(BIN)/python -m nbstripout --keep-id --extra-keys "metadata.language_info.version \
 	metadata.language_info.codemirror_mode metadata.language_info.file_extension \
 	metadata.language_info.mimetype metadata.language_info.nbconvert_exporter \
@@ -27,10 +36,12 @@ WORKSHOP := PYTHONPATH="$$PWD/book$${PYTHONPATH:+:$$PYTHONPATH}" $(BIN)/python
 export MALLOC_MMAP_THRESHOLD_ = 33554432
 export MALLOC_TRIM_THRESHOLD_ = 268435456
 
+comma := ,
+
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
-.PHONY: help env book test unmeasured lint stripped unit notebooks foreign foreign-ci pages lab live colab firefox pdf epub release assignment grade reproduce bench check mutants strip clean
+.PHONY: help env lock book test unmeasured lint stripped unit notebooks foreign foreign-ci pages lab live colab firefox pdf epub release assignment grade reproduce bench check mutants strip clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
@@ -38,13 +49,28 @@ help:  ## this list
 env: $(READY)  ## the Python environment alone, in .venv
 
 $(READY): requirements.txt pyproject.toml
-	@echo "==> Installing into $(VENV) (a few minutes and about 2 GB the first time)"
 	@$(PYTHON) -c 'import sys; v = sys.version_info; sys.exit(None if v >= (3, 11) else \
 	  f"Python 3.11 or newer is needed, this is {v[0]}.{v[1]}; try: make PYTHON=python3.12")'
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --disable-pip-version-check -r requirements.txt
-	$(BIN)/python -m pip install --disable-pip-version-check --no-deps -e .
+	@echo "==> 1 of 3: what the book needs, into $(VENV)"
+	$(PIP) --require-hashes -r requirements.txt
+	@echo "==> 2 of 3: PyTorch$(if $(CPU_BUILD),$(comma) the CPU build (make TORCH=cuda takes the other))"
+	$(PIP) $(CPU_BUILD) $(LIMITS) || $(PIP) $(LIMITS)
+	@echo "==> 3 of 3: ddlib, from this folder"
+	$(PIP) --no-deps -e .
 	@touch $@
+
+$(TESTED): $(READY) requirements-test.txt
+	@echo "==> What only the tests need, into $(VENV)"
+	$(PIP) --require-hashes -r requirements-test.txt
+	@touch $@
+
+LOCK = $(BIN)/uv pip compile --quiet --upgrade --universal --python-version 3.11 --generate-hashes \
+	--custom-compile-command "make lock"
+lock: $(READY)  ## requirements.txt and requirements-test.txt anew, from pyproject.toml
+	$(PIP) --quiet uv==0.13.9
+	$(LOCK) --group book -o requirements.txt
+	$(LOCK) --group test -o requirements-test.txt
 
 book: $(READY)  ## execute the notebooks and build the pages
 	@$(BIN)/python book/_ext/build.py
@@ -68,37 +94,37 @@ check: lint stripped  ## for every day: style, core tests, house rules, facts, f
 unmeasured:
 	@rm -rf _build/measured
 
-lint: $(READY)
+lint: $(TESTED)
 	@echo "==> Style"
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 
-stripped: $(READY)
+stripped: $(TESTED)
 	@echo "==> Notebooks are stored without outputs"
 	$(STRIP) --verify $(NOTEBOOKS)
 
 # Lessons' open cells, as they stand, run on the foreign machine.
-unit: $(READY)
+unit: $(TESTED)
 	@echo "==> Unit and property tests"
 	$(PYTEST) -n $(JOBS) --dist worksteal $(SLOWEST) -m "not built and not browser" \
 	  --deselect tests/book/test_walk.py::test_open_cells_run_alone
 
-notebooks: $(READY)  ## every notebook in a fresh process, warnings are errors
+notebooks: $(TESTED)  ## every notebook in a fresh process, warnings are errors
 	@echo "==> Every notebook in a fresh process, warnings are errors"
 	PYTHONPATH="$$PWD/book" PYTHONWARNINGS="error:::__main__" \
 	  $(PYTEST) -n $(JOBS) --nbmake --nbmake-timeout=600 $(NOTEBOOKS)
 
 FOREIGN ?=
-foreign: $(READY)  ## notebooks and claims on machines that round otherwise
+foreign: $(TESTED)  ## notebooks and claims on machines that round otherwise
 	$(BIN)/python tests/support/foreign_machines.py --jobs $(JOBS) $(FOREIGN)
 
-foreign-ci: $(READY)
+foreign-ci: $(TESTED)
 	@echo "==> Notebooks and claims on a foreign machine"
 	$(BIN)/python tests/support/foreign_machines.py --jobs $(JOBS) --ci
 
 PAGE_TESTS = $(shell grep -rlE "mark\.(browser|built)\b" tests --include="test_*.py")
 
-pages: $(READY)
+pages: $(TESTED)
 	@$(BIN)/python book/_ext/build.py --strict
 	@echo "==> The built pages"
 	$(PYTEST) -n $(JOBS) --dist worksteal $(SLOWEST) -m "built or browser" $(PAGE_TESTS) || { \
@@ -151,14 +177,14 @@ colab: book  ## readers' notebooks beside Colab's pins, out of the repository (P
 	  -r tests/support/colab.txt
 	OMP_NUM_THREADS=1 $(BIN)/python tests/support/colab.py $(COLAB)/bin/python $(LESSON)
 
-firefox: $(READY)  ## the page tests in Firefox, on the pages as they were built
+firefox: $(TESTED)  ## the page tests in Firefox, on the pages as they were built
 	BROWSER=firefox $(PYTEST) -n $(JOBS) --dist worksteal -m "browser and not chromium" $(PAGE_TESTS)
 
 reproduce: $(READY)  ## measure the paper's claims anew (slow), into book/results/
 	$(WORKSHOP) -m workshop.report.reproduce
 
 ONLY ?= ddlib.dynamics.*
-mutants: $(READY)  ## which mistakes would the tests notice? ONLY=ddlib.control.* names modules
+mutants: $(TESTED)  ## which mistakes would the tests notice? ONLY=ddlib.control.* names modules
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[mutants]"
 	OMP_NUM_THREADS=1 $(BIN)/mutmut run --max-children $(JOBS) "$(ONLY)"
 	$(BIN)/mutmut results
@@ -166,7 +192,7 @@ mutants: $(READY)  ## which mistakes would the tests notice? ONLY=ddlib.control.
 bench: $(READY)  ## speed, as ratios measured in one run
 	$(BIN)/python benchmarks/run.py
 
-strip: $(READY)  ## remove outputs from the notebooks before a commit
+strip: $(TESTED)  ## remove outputs from the notebooks before a commit
 	$(STRIP) $(NOTEBOOKS)
 
 clean:  ## remove what was built; .venv stays

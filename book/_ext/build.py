@@ -1,12 +1,14 @@
-"""Build the book: `python book/_ext/build.py [--strict] [FOLDER]`.
+"""Build the book: `python book/_ext/build.py [--strict] [--lesson NAME] [FOLDER]`.
 
 A chapter that fails does not take the others with it: its page says in a box what failed, the
 end of the build lists such pages, and the status is 1. With `--strict`, or with CI=true in the
-environment, every warning is an error too.
+environment, every warning is an error too. With `--lesson` one notebook is executed, and its page
+alone is written, into a folder of its own. Ctrl-C ends all of it at once.
 
-Pages are always written from fresh doctrees, since Sphinx does not repeat the warnings of pages
-it has read before; executed notebooks come from a cache. The stamp is written last, so that only
-a clean build lets the next call say "nothing changed".
+Executed notebooks come from a cache. Only pages whose sources changed are read and written again,
+but all are where something changed that all depend on, with `--strict`, and after complaints: for
+Sphinx does not repeat the warnings of pages that it has read before. The stamp is written last, so
+that only a clean build lets the next call say "nothing changed".
 """
 
 from __future__ import annotations
@@ -14,27 +16,31 @@ from __future__ import annotations
 import argparse
 import gc
 import json
-import logging
 import os
 import re
 import shutil
+import signal
 import sys
 import time
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor, wait
-from contextlib import contextmanager
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import NoReturn
 
 sys.path.insert(0, str(Path(__file__).parents[1]))  # for the workshop of the book
 
-import yaml
-from dd_book import PAGE_INPUTS, cache_path, digest
+import nbformat
+import psutil
+from dd_book import FRAME_INPUTS, PAGE_INPUTS, cache_path, digest
 from dd_cite import edition
 from dd_failures import FAILURES, last_line, where
 from dd_public import repository, site
 from jupyter_book.sphinx import build_sphinx
 from jupyter_cache import get_cache
-from jupyter_cache.executors import load_executor
+from jupyter_cache.base import CacheBundleIn
+from jupyter_cache.executors.utils import single_nb_execution
+from lessons import contents, lesson
 from sphinx.util.console import strip_colors
 
 from workshop.report.evidence.claims import SHARED
@@ -49,6 +55,14 @@ MESSAGE = re.compile(r"(?P<where>.*?)(?::\d+)?:? ?(?:WARNING|ERROR|CRITICAL|SEVE
 TRACEBACK = "Traceback (most recent call last):"
 NOTEBOOK_FAILED = "Executing notebook failed"
 CRASHES = ("Exception occurred:", "Extension error", "Sphinx error:", "Theme error:")
+
+
+def known(cache, notebook) -> bool:
+    """Whether a notebook's code has been executed."""
+    with suppress(KeyError):
+        cache.match_cache_notebook(notebook)
+        return True
+    return False
 
 
 def execute(cache, paths: list[Path], say=print) -> list[Path]:
@@ -70,50 +84,83 @@ def execute(cache, paths: list[Path], say=print) -> list[Path]:
     list of Path
         Notebooks whose kernel ended.
     """
-    for path in paths:
-        cache.add_nb_to_project(str(path))
-    names = list(map(str, paths))
-    wanted = len(cache.list_unexecuted(filter_uris=names))
+    notebooks = {path: nbformat.read(path, as_version=4) for path in paths}
+    new = {path: notebook for path, notebook in notebooks.items() if not known(cache, notebook)}
+    pool = ThreadPoolExecutor(os.cpu_count())
+    running: dict[Future, Path] = {
+        pool.submit(
+            single_nb_execution,
+            notebook,
+            cwd=str(path.parent),
+            timeout=TIMEOUT,
+            allow_errors=False,
+        ): path
+        for path, notebook in new.items()
+    }
+    ended, kept, waiting = [], 0, set(running)
+    started = told = time.monotonic()
+    try:
+        while waiting:
+            finished, waiting = wait(waiting, PAUSE, FIRST_COMPLETED)
+            for future in finished:
+                path = running[future]
+                if error := future.exception():
+                    ended.append(path)
+                    print(f"{path}: {error}", file=sys.stderr)
+                elif (result := future.result()).err:
+                    print(f"{path}: {result.exc_string}", file=sys.stderr)
+                else:
+                    data = {"execution_seconds": result.time}
+                    bundle = CacheBundleIn(result.nb, str(path), data=data)
+                    cache.cache_notebook_bundle(bundle, check_validity=False, overwrite=True)
+                    kept += 1
+            now = time.monotonic()
+            if not waiting or now - told >= PAUSE:
+                say(f"    {kept} of {len(new)} notebooks after {now - started:.0f} s")
+                told = now
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+    return ended
 
-    # Counted by files: the executor forks, and a process that is forked while this one asks the
-    # cache's database waits for ever for a lock that nobody in it holds.
-    def kept() -> int:
-        return sum(1 for _ in Path(cache.path).glob("executed/*/base.ipynb"))
 
-    before, started = kept(), time.monotonic()
-    logger = logging.getLogger("notebooks")
-    logger.setLevel(logging.WARNING)
-    run = load_executor("local-parallel", cache, logger).run_and_cache
-    with ThreadPoolExecutor(1) as beside:
-        task = beside.submit(run, filter_uris=names, timeout=TIMEOUT)
-        left = {task}
-        while left:
-            _, left = wait(left, PAUSE)
-            count = kept() - before
-            say(f"    {count} of {wanted} notebooks after {time.monotonic() - started:.0f} s")
-    errored = task.result().errored  # also where two notebooks of the same code met in the cache
-    left = cache.list_unexecuted(filter_uris=errored) if errored else []
-    return [Path(record.uri) for record in left]
-
-
-def write_pages(root: Path, strict: bool, ended: list[str]) -> int:
-    """Let Jupyter Book write the pages on all cores, of which some are not to be executed again.
+def write_pages(root: Path, out: Path, strict: bool, only: str = "", **settings) -> int:
+    """Let Jupyter Book write the pages on all cores, or only one of them.
 
     Returns 0 if it wrote them all, and found no fault that counts.
     """
-    told = {
+    settings |= {
         "external_toc_path": (root / "_toc.yml").as_posix(),
         "latex_individualpages": False,
         "nitpicky": strict,
-        "kernel_ended": ended,
     }
     gc.disable()  # the pages are trees of many nodes: to search them would take a fifth of the time
     outcome = build_sphinx(
-        *(root, root / "_build" / "html"),
-        **dict(path_config=root / "_config.yml", noconfig=True, confoverrides=told),
+        *(root, out),
+        **dict(path_config=root / "_config.yml", noconfig=True, confoverrides=settings),
         **dict(warningiserror=strict, keep_going=strict, jobs=os.cpu_count()),
+        **dict(filenames=[str(root / f"{only}.ipynb")] if only else []),
     )
+    if isinstance(outcome, KeyboardInterrupt):
+        raise outcome
     return int(isinstance(outcome, Exception) or outcome)
+
+
+def stop() -> NoReturn:
+    """End all kernels and workers, in whatever they are, and then this process."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)
+    end = time.monotonic() + 0.5  # for a kernel that is about to start
+    while (children := psutil.Process().children(recursive=True)) or time.monotonic() < end:
+        for child in children:
+            with suppress(psutil.NoSuchProcess):
+                child.kill()
+        psutil.wait_procs(children, timeout=0.1)
+    print("==> Stopped; notebooks that were executed are kept", flush=True)
+    os._exit(128 + signal.SIGINT)
+
+
+def interrupt(*_) -> NoReturn:
+    raise KeyboardInterrupt
 
 
 def log(root: Path) -> Path:
@@ -134,22 +181,6 @@ def messages(lines: list[str]) -> list[str]:
             found.append("")
         found[-1] += line
     return [text for text in found if text.strip() and not text.startswith(TRACEBACK)]
-
-
-def taught(root: Path) -> set[str]:
-    """Pages of the lectures, if the book has some."""
-    path = root / "book" / "lectures.yml"
-    told = yaml.safe_load(path.read_text(encoding="utf-8")) if path.is_file() else {}
-    return {page for lecture in told.values() for page in lecture["pages"]}
-
-
-def listed(contents) -> Iterator[str]:
-    """The pages of a table of contents, in their order."""
-    if isinstance(contents, dict):
-        yield from (contents[key] for key in ("root", "file") if key in contents)
-    for inner in contents.values() if isinstance(contents, dict) else contents:
-        if isinstance(inner, (dict, list)):
-            yield from listed(inner)
 
 
 @contextmanager
@@ -209,51 +240,68 @@ def report(root: Path, found: list[str], strict: bool) -> None:
         say("==> FAILED: under --strict or CI=true a warning is an error")
 
 
+def surroundings(root: Path, folder: Path) -> None:
+    """What kernels find in their environment."""
+    os.environ.setdefault("OMP_NUM_THREADS", "1")  # one core for each notebook
+    paths = (str(root / "book"), os.environ.get("PYTHONPATH"))  # for pages in its folders, too
+    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, paths))
+    # that of the pages, whatever the environment asks for: with Agg they would have no pictures
+    os.environ["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"
+    os.environ.setdefault(SHARED, str(folder / "measured"))  # chapters and ledger share claims
+
+
+def build(root: Path, strict: bool, frame: str, stamp: Path) -> tuple[bool, bool]:
+    """Execute the notebooks that changed and write the pages; whether it failed, and was clean.
+
+    `frame` is what all pages depend on; pages of another frame are made anew.
+    """
+    folder, html = cache_path(root), root / "_build" / "html"
+    surroundings(root, folder)
+    frame_of_pages = root / "_build" / ".doctrees" / "frame"
+    if strict or not frame_of_pages.is_file() or frame_of_pages.read_text() != frame:
+        for old in (html, frame_of_pages.parent):
+            shutil.rmtree(old, ignore_errors=True)
+    paths = [root / f"{page}.ipynb" for page in contents(root)]  # the ledger after the chapters
+    log(root).write_text("")
+    with errors_into(log(root)):
+        dead = execute(get_cache(str(folder)), [path for path in paths if path.is_file()], progress)
+    for old in (root / "_build" / FAILURES, frame_of_pages, stamp):  # until the pages are written
+        old.unlink(missing_ok=True)
+    before = log(root).stat().st_size
+    with errors_into(log(root)):
+        ended = [path.relative_to(root).with_suffix("").as_posix() for path in dead]
+        cached = {"nb_execution_cache_path": str(folder), "kernel_ended": ended}
+        status = write_pages(root, html, strict, **cached)
+    text = strip_colors(log(root).read_bytes()[before:].decode()).splitlines(keepends=True)
+    found = messages([line for line in text if NOISE not in line])
+    report(root, found, strict)
+    if status and not found:
+        say("==> FAILED: not all pages could be written")
+    failed = bool(status or failures(root) or (strict and found))
+    if clean := not (failed or found):
+        frame_of_pages.write_text(frame)
+    else:
+        say(f"==> All messages are in {log(root)}, tracebacks of notebooks in {html}/reports")
+        say("    Please report what is not yours, with that file, where this book came from.")
+    return failed, clean
+
+
 def main(root: Path, strict: bool) -> int:
     html = root / "_build" / "html"
     stamp = html / ".built-from"
     public = repository(root)  # buttons, cards, map of the site and footers hang on it
-    about = (digest(root, PAGE_INPUTS), public and site(public), public, edition(root))
-    sources = " ".join(filter(None, about))
-    failed = False
-    if stamp.is_file() and stamp.read_text() == sources:
+    about = " ".join(filter(None, (public and site(public), public, edition(root))))
+    sources = f"{digest(root, PAGE_INPUTS)} {about}"
+    by_strict, failed = f"{sources} strict", False
+    wanted = {by_strict} if strict else {by_strict, sources}
+    if stamp.is_file() and stamp.read_text() in wanted:
         print("==> Nothing changed since the last build")
     else:
         print("==> Executing the notebooks that changed and writing the pages", flush=True)
         started = time.monotonic()
-        folder = cache_path(root, root / "_build")
-        folder.mkdir(parents=True, exist_ok=True)
-        os.environ.setdefault("OMP_NUM_THREADS", "1")  # one core for each notebook
-        paths = (str(root / "book"), os.environ.get("PYTHONPATH"))  # for pages in its folders, too
-        os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, paths))
-        # that of the pages, whatever the environment asks for: with Agg they would have no pictures
-        os.environ["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"
-        os.environ["DDLIB_PNG"] = " ".join(taught(root))  # figures as PNG, for dd_figures
-        os.environ.setdefault(SHARED, str(folder / "measured"))  # chapters and ledger share claims
-        toc = yaml.safe_load((root / "_toc.yml").read_text(encoding="utf-8"))
-        paths = [root / f"{page}.ipynb" for page in listed(toc)]  # the ledger after the chapters
-        log(root).write_text("")
-        with errors_into(log(root)):
-            paths = [path for path in paths if path.is_file()]
-            dead = execute(get_cache(str(folder)), paths, progress)
-        for stale in (html, root / "_build" / ".doctrees"):
-            shutil.rmtree(stale, ignore_errors=True)
-        (root / "_build" / FAILURES).unlink(missing_ok=True)
-        before = log(root).stat().st_size
-        with errors_into(log(root)):
-            ended = [path.relative_to(root).with_suffix("").as_posix() for path in dead]
-            status = write_pages(root, strict, ended)
-        told = strip_colors(log(root).read_bytes()[before:].decode()).splitlines(keepends=True)
-        found = messages([line for line in told if NOISE not in line])
-        report(root, found, strict)
-        failed = bool(status or failures(root) or (strict and found))
-        if status and not found:
-            say("==> FAILED: not all pages could be written")
-        if failed or found:
-            say(f"==> All messages are in {log(root)}, tracebacks of notebooks in {html}/reports")
-            say("    Please report what is not yours, with that file, where this book came from.")
-        else:
-            stamp.write_text(sources)
+        failed, clean = build(root, strict, f"{digest(root, FRAME_INPUTS)} {about}", stamp)
+        if clean:
+            stamp.write_text(by_strict if strict else sources)
         print(f"==> {time.monotonic() - started:.0f} s")
     page = html / "index.html"
     if page.is_file():
@@ -261,10 +309,43 @@ def main(root: Path, strict: bool) -> int:
     return int(failed)
 
 
+def alone(root: Path, name: str) -> int:
+    """Execute one notebook and write its page, into a folder of its own; others are only read."""
+    of = lesson(root, f"book/{name}")
+    if of is None or of.page not in contents(root):
+        say(f"==> FAILED: _toc.yml names no notebook book/{name}.ipynb")
+        return 1
+    folder, out = cache_path(root), root / "_build" / "page" / "html"
+    surroundings(root, folder)
+    cache = get_cache(str(folder))
+    print(f"==> Executing {name}, if it changed, and writing its page", flush=True)
+    log(root).write_text("")
+    with errors_into(log(root)):
+        execute(cache, [of.path], progress)
+    if not known(cache, of.notebook):
+        say(f"==> FAILED: {last_line(strip_colors(log(root).read_text()))}")
+        return 1
+    (out.parent / ".doctrees" / f"{of.page}.doctree").unlink(missing_ok=True)
+    with errors_into(log(root)):
+        settings = {"only_page": of.page, "only_cache": str(folder), "nb_execution_mode": "off"}
+        status = write_pages(root, out, False, of.page, **settings)
+    page = out / f"{of.page}.html"
+    print(f"==> Open {page.relative_to(root)}, that is {page.as_uri()}")
+    return status
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--strict", action="store_true", help="warnings are errors")
+    parser.add_argument("--lesson", default="", help="the one page to build, like feedback")
     parser.add_argument("folder", nargs="?", default=".", type=Path)
     arguments = parser.parse_args()
     in_ci = os.environ.get("CI", "").lower() in {"1", "true"}
-    sys.exit(main(arguments.folder.resolve(), arguments.strict or in_ci))
+    folder = arguments.folder.resolve()
+    signal.signal(signal.SIGTERM, interrupt)
+    try:
+        if arguments.lesson:
+            sys.exit(alone(folder, arguments.lesson))
+        sys.exit(main(folder, arguments.strict or in_ci))
+    except KeyboardInterrupt:
+        stop()

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import glob
 import shutil
 import sys
-from importlib.metadata import files
+import time
+from functools import partial
+from importlib.metadata import files, version
 from pathlib import Path
 
 import joblib
-import patches  # noqa: F401
+import nbformat
+from jupyter_cache import get_cache
 from slim import slim
 
 sys.path.insert(0, str(Path(__file__).parents[1]))  # for the workshop of the book
@@ -23,10 +25,12 @@ KINDS = {
 }
 KEPT_CACHES = 3
 
-# What a notebook's outcome depends on beside its own cells, and what the pages depend on.
-# Questions for readers (quizzes.yml) are the pages' alone.
+# What a notebook's outcome depends on beside its own cells, what every page depends on beside its
+# own source, and what the pages together depend on. Lists like quizzes.yml are the pages' alone.
 READ = ("book/cards.yml", "book/claims.yml", "book/errata.yml", "book/questions.yml")
-CELL_INPUTS = ("ddlib", "book/workshop", "book/beyond", "book/results", *READ, "requirements.txt")
+CODE = ("ddlib", "book/workshop", "book/beyond", "requirements.txt")
+CELL_INPUTS = (*CODE, "book/results", "book/data", *READ)
+FRAME_INPUTS = (*CELL_INPUTS, "book/_ext", "_config.yml", "_toc.yml", "CITATION.cff")
 PAGE_INPUTS = (
     "book",
     "ddlib",
@@ -38,10 +42,14 @@ PAGE_INPUTS = (
 )
 
 
+LIBRARIES = ("numpy", "scipy", "torch", "matplotlib", "Sphinx", "myst-nb")
+
+
 def digest(root: Path, patterns: tuple[str, ...]) -> str:
-    """Hash of all sources that the patterns name: see `workshop.report.results`."""
+    """Hash of all sources that the patterns name, and of the versions that make pages of them."""
     read = {name: path.read_bytes() for name, path in sources(root, patterns).items()}
-    return joblib.hash((sys.version_info[:2], read), hash_name="sha1")[:16]
+    versions = sys.version_info[:2], *map(version, LIBRARIES)
+    return joblib.hash((versions, read), hash_name="sha1")[:16]
 
 
 def sources(root: Path, patterns: tuple[str, ...]) -> dict[str, Path]:
@@ -53,36 +61,18 @@ def sources(root: Path, patterns: tuple[str, ...]) -> dict[str, Path]:
     return {name.as_posix(): path for name, path in named.items() if name not in hidden}
 
 
-def cache_path(root: Path, build: Path) -> Path:
-    """Where executed notebooks are kept: keyed by the code and data they import and read."""
-    return build / ".jupyter_cache" / digest(root, CELL_INPUTS)
+def cache_path(root: Path) -> Path:
+    """Where executed notebooks are kept: keyed by the code and data they import and read.
 
-
-def set_cache_path(app, config):
-    """Point myst-nb to the cache, and drop the oldest ones."""
-    cache = cache_path(Path(app.srcdir), Path(app.outdir).parent)
-    caches = cache.parent
+    The oldest of such folders are dropped.
+    """
+    cache = root / "_build" / ".jupyter_cache" / digest(root, CELL_INPUTS)
     cache.mkdir(parents=True, exist_ok=True)
     cache.touch()
-    by_age = sorted(caches.iterdir(), key=lambda path: path.stat().st_mtime)
+    by_age = sorted(cache.parent.iterdir(), key=lambda path: path.stat().st_mtime)
     for old in by_age[:-KEPT_CACHES]:
         shutil.rmtree(old)
-    config.nb_execution_cache_path = str(cache)
-
-
-def leave_out_unlisted(app, config):
-    """Leave out what the table of contents does not name, where the folder's path has brackets.
-
-    Elsewhere `sphinx_external_toc` has done so: by a pattern that begins with that path.
-    """
-    if glob.escape(str(app.srcdir)) == str(app.srcdir):
-        return
-    listed = set(config.external_site_map)
-    for suffix in config.source_suffix:
-        for path in glob.glob(f"**/*{suffix}", root_dir=app.srcdir, recursive=True):
-            name = Path(path).as_posix()
-            if not {name, name.removesuffix(suffix)} & listed:
-                config.exclude_patterns = [*config.exclude_patterns, name]
+    return cache
 
 
 def copy_mathjax(app):
@@ -103,16 +93,26 @@ def read_side_by_side(app, env, names):
     app.extensions["sphinx_multitoc_numbering"].parallel_read_safe = True
 
 
-def slim_pages(app, exception):
+def show_outputs(app, page, text):
+    """A page that is built alone takes its outputs from the cache; no other has any."""
+    if page == app.config.only_page:
+        notebook = nbformat.reads(text[0], as_version=4)
+        _, executed = get_cache(app.config.only_cache).merge_match_into_notebook(notebook)
+        text[0] = nbformat.writes(executed)
+
+
+def slim_pages(started, app, exception):
     """Trim what was written, once all of it is there."""
     if app.builder.format == "html" and exception is None:
-        slim(Path(app.outdir))
+        slim(Path(app.outdir), started)
 
 
 def setup(app):
-    app.connect("config-inited", set_cache_path)
-    app.connect("config-inited", leave_out_unlisted, priority=910)  # the table has been read
+    app.add_config_value("only_page", "", "")  # of `build.py --lesson`
+    app.add_config_value("only_cache", "", "")
+    app.connect("source-read", show_outputs, priority=100)
     app.connect("builder-inited", copy_mathjax)
     app.connect("env-before-read-docs", read_side_by_side)
-    app.connect("build-finished", slim_pages, priority=900)  # after the theme's own
+    slim_new = partial(slim_pages, time.time() - 1)
+    app.connect("build-finished", slim_new, priority=900)  # after the theme's own
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -5,6 +5,8 @@ Its figures are numbered on from those of its lesson.
 
 from __future__ import annotations
 
+from hashlib import sha1
+
 from docutils import nodes
 
 EVIDENCE = "book/evidence/"
@@ -17,6 +19,18 @@ def take_numbers_away(app, env):
             env.toc_secnumbers.pop(page, None)
             for entry in toc.findall(nodes.reference):
                 entry.attributes.pop("secnumber", None)
+
+
+def write_all(app, env):
+    """Titles and numbers stand on other pages, too: if one changed, all pages are written anew."""
+    numbers = env.toc_secnumbers, env.toc_fignumbers
+    shown = [
+        (page, env.titles[page].astext(), *(kind.get(page) for kind in numbers))
+        for page in sorted(env.found_docs)
+    ]
+    key = sha1(repr(shown).encode()).hexdigest()
+    before, env.dd_shown = getattr(env, "dd_shown", ""), key
+    return env.found_docs if before != key else ()
 
 
 def neighbours(pages: list[str], page: str) -> tuple[str | None, str | None]:
@@ -40,6 +54,7 @@ def lead_on(app, page, template, context, doctree):
 
 
 def setup(app):
+    app.connect("env-get-updated", write_all, priority=900)  # when all are numbered
     app.connect("env-check-consistency", take_numbers_away)
     app.connect("html-page-context", lead_on)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -10,9 +10,8 @@ from __future__ import annotations
 import re
 from html import escape
 
-from dd_lessons import SOLUTION
-from dd_quiz import ON_YOUR_OWN
 from docutils import nodes
+from lessons import ON_YOUR_OWN, SOLUTION
 from myst_nb.sphinx_ import HideCodeCellNode, depart_HideCellInput
 from sphinx.transforms import SphinxTransform
 

@@ -1,165 +1,185 @@
-"""For who teaches: sections of chapters, and the exercises of all chapters by their kind.
+"""What pages say of lessons: their sections, exercises, objectives and times; and lectures on them.
 
-The role ``{section}`page: Heading``` is a link to a section; a heading that the page does not have
-is an error. So is ``{exercise}`page: 1, 3```, which links exercises and says how long they take.
-The directive ``{exercises} kind`` lists exercises as links, and ``{exercise-minutes}`` says by
-which rule their minutes are estimated. An exercise is a paragraph that begins with
-``**2. Its title** (a derivation).``
+- ``{section}`page: Heading``` links a section, ``{exercise}`page: 1, 3``` links exercises and says
+  how long they take, ``{open}`words <page?widget=name:value>``` opens a widget in a state, which
+  stands in the address as the widget's own button *Link* writes it, or leads to ``<page#anchor>``.
+  What is not there is an error.
+- ``{reading}`page page``` is the time to read some pages.
+- ``{exercises} kind`` lists exercises, ``{exercise-minutes}`` says by which rule their minutes are
+  estimated, ``{objectives} lesson`` lists those of a lesson, or of all without an argument.
+- ``{lecture} 1`` is a lecture of `book/lectures.yml`: a table of what to show and ask, and the
+  answers in a fold. ``{lessons-at-a-glance}`` is a table of the walk.
 """
 
 from __future__ import annotations
 
-import json
-import math
 import re
 from html import escape
 from pathlib import Path
-from typing import NamedTuple
 
-import dd_quiz
+from dd_runtime import table
 from docutils import nodes
+from docutils.statemachine import StringList
+from lessons import (
+    EQUATION,
+    KINDS,
+    LINE,
+    WORDS_A_MINUTE,
+    Exercise,
+    Lesson,
+    Objective,
+    chapters,
+    entries,
+    lesson,
+    lessons,
+    time_to_read,
+    walk,
+)
 from sphinx.addnodes import pending_xref
 from sphinx.util.docutils import SphinxDirective, SphinxRole
-
-KINDS = {"derivation": 10, "design": 15, "prediction": 5, "experiment": 10}
-"""Kinds of exercise, and minutes to think about one."""
-
-WORDS_A_MINUTE = 120
-"""With formulas and figures; at 200, as for plain prose, readers took twice as long and more."""
-
-LINE, EQUATION = 2, 1
-"""Minutes for a line of code and for an equation, of as many as the solution has."""
 
 RULE = (
     "Minutes of an exercise are estimated by a rule: {think}; {line} for each line of code and "
     "{equation} for each equation that the solution has; and the time to read question and "
     "solution, at {pace} words a minute. The sum is rounded up to five minutes."
 )
-SOLUTION = "<summary>Solution</summary>"
-TITLE = re.compile(r"^\*\*(\d+)\. (.+?)\*\*(?: \(an? (\w+)\)\.)?", re.MULTILINE)
-CODE = re.compile(r"^```python\n(.*?)^```|`(mine = [^`]+)`", re.MULTILINE | re.DOTALL)
-EQUATIONS = re.compile(r"\$[^$]*(?:=|<|>|\\[lg]e\b|\\approx)[^$]*\$")
-NEXT = re.compile(r"^## ", re.MULTILINE)
+LENGTH, QUIZ = 90, 5
+"""Minutes of a lecture, and those of them for *Check yourself*."""
 
-
-class Exercise(NamedTuple):
-    """An exercise of a chapter; `kind` is empty where the page does not say it."""
-
-    page: str
-    number: int
-    title: str
-    kind: str
-    minutes: int
-
-
-def prose(path: Path) -> list[str]:
-    """The markdown cells of a notebook."""
-    cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
-    return ["".join(c["source"]) for c in cells if c["cell_type"] == "markdown"]
-
-
-def headings(path: Path) -> list[str]:
-    """All headings of a notebook."""
-    return re.findall(r"^#+ (.+)$", "\n".join(prose(path)), re.MULTILINE)
-
-
-def exercises(path: Path) -> list[Exercise]:
-    """All exercises of a notebook, in its order."""
-    _, _, own = "\n".join(prose(path)).partition(dd_quiz.OWN)
-    own = NEXT.split(own, maxsplit=1)[0]
-    page = path.stem if path.parent.name == "book" else f"{path.parent.name}/{path.stem}"
-    pieces = TITLE.split(own)[1:]  # number, title, kind and text of each
-    return [
-        Exercise(page, int(number), title, kind or "", minutes(kind, text))
-        for number, title, kind, text in zip(*(pieces[k::4] for k in range(4)))
-    ]
-
-
-def minutes(kind: str | None, text: str) -> int:
-    """How long an exercise takes by `RULE`; its text is that of question and solution."""
-    lines = sum(len((block or line).strip().splitlines()) for block, line in CODE.findall(text))
-    equations = len(EQUATIONS.findall(text.partition(SOLUTION)[2]))
-    read = len(re.findall(r"\w+", text)) / WORDS_A_MINUTE
-    return 5 * math.ceil((KINDS.get(kind, 10) + LINE * lines + EQUATION * equations + read) / 5)
+OPEN = re.compile(
+    r"(?P<words>.+?)\s*<(?P<page>[\w-]+)(?:\?(?P<key>[\w-]+)=(?P<set>[^#>]+)|#(?P<at>[^>]+))>"
+)
+ANSWERS = {"answer": "Expected", "wrong": "Commonest wrong answer", "say": "Say", "open": "Open"}
 
 
 def rule() -> str:
     """`RULE` with its numbers."""
-    thought = sorted((number, kind) for kind, number in KINDS.items())
-    alike = {
-        n: [f"a{'n' * (k[0] in 'aeiou')} {k}" for m, k in thought if m == n] for n, _ in thought
-    }
-    think = ", ".join(f"{n} about {' or '.join(kinds)}" for n, kinds in alike.items())
+    kinds: dict[int, list[str]] = {}
+    for kind, minutes in sorted(KINDS.items(), key=lambda entry: (entry[1], entry[0])):
+        kinds.setdefault(minutes, []).append(f"a{'n' * (kind[0] in 'aeiou')} {kind}")
+    think = ", ".join(f"{n} about {' or '.join(alike)}" for n, alike in kinds.items())
     think = think.replace(" about", " minutes to think about", 1)
     return RULE.format(think=think, line=LINE, equation=EQUATION, pace=WORDS_A_MINUTE)
 
 
-def chapters(root: Path) -> list[Path]:
-    """Notebooks in the order of the table of contents."""
-    toc = (root / "_toc.yml").read_text(encoding="utf-8")
-    paths = (root / f"{page}.ipynb" for page in re.findall(r"file: (\S+)", toc))
-    return [path for path in paths if path.is_file()]
+def address(found: re.Match) -> str:
+    """Where a match of `OPEN` leads, from a page beside it."""
+    if found["at"]:
+        return f"{found['page']}.html#{found['at']}"
+    return f"{found['page']}.html?{found['key']}={found['set']}#{found['key']}-widget"
 
 
-class Section(SphinxRole):
-    """``{section}`page: Heading```."""
-
-    def run(self):
-        page, _, heading = self.text.partition(": ")
-        path = Path(self.env.doc2path(self.env.docname)).parent / f"{page}.ipynb"
-        quiz = heading == dd_quiz.HEADING[3:] and dd_quiz.questions(Path(self.env.srcdir), page)
-        if not path.is_file() or not (quiz or heading in headings(path)):
-            told = self.inliner.reporter.error(f"no such section: {self.text}", line=self.lineno)
-            return [self.inliner.problematic(self.rawtext, self.rawtext, told)], [told]
-        self.env.note_dependency(str(path))
-        target = f"{page}.html#{nodes.make_id(heading)}"
-        return [nodes.reference("", heading, internal=True, refuri=target)], []
-
-
-class Asked(SphinxRole):
-    """``{exercise}`page: 1, 3```."""
-
-    def run(self):
-        page, _, numbers = self.text.partition(": ")
-        path = Path(self.env.doc2path(self.env.docname)).parent / f"{page}.ipynb"
-        known = {str(one.number): one for one in exercises(path)} if path.is_file() else {}
-        wanted = numbers.split(", ")
-        if not set(wanted) <= set(known):
-            told = self.inliner.reporter.error(f"no such exercise: {self.text}", line=self.lineno)
-            return [self.inliner.problematic(self.rawtext, self.rawtext, told)], [told]
-        self.env.note_dependency(str(path))
-        found = [chapter(self.env, page), nodes.Text(f", exercise{'s' * (len(wanted) > 1)} ")]
-        for k, number in enumerate(wanted):
-            between = " and " if k + 1 == len(wanted) else ", "
-            found += [nodes.Text(between)] if k else []
-            found += [numbered(known[number], path)]
-            found += [nodes.Text(f" ({known[number].minutes} min)")]
-        return found, []
-
-
-def chapter(env, page: str) -> pending_xref:
-    """A link to a chapter, with its title."""
+def title_of(env, page: str) -> pending_xref:
+    """A link to a lesson; Sphinx puts in its title."""
     target = dict(refdomain="std", reftype="doc", refexplicit=False)
     target |= dict(reftarget=f"/book/{page}", refdoc=env.docname)
     return pending_xref("", nodes.inline(), **target)
 
 
-def numbered(each: Exercise, path: Path) -> nodes.raw:
+def numbered(exercise: Exercise, of: Lesson) -> nodes.raw:
     """A link to an exercise that shows its number alone, and tells the rest to a screen reader."""
-    told = escape(f"Exercise {each.number} of {headings(path)[0]}", quote=True)
-    to = f'href="{each.page}.html#exercise-{each.number}" aria-label="{told}"'
-    link = f'<a class="reference internal" {to}>{each.number}</a>'
+    label = escape(f"Exercise {exercise.number} of {of.headings[0]}", quote=True)
+    target = f'href="{of.name}.html#exercise-{exercise.number}" aria-label="{label}"'
+    link = f'<a class="reference internal" {target}>{exercise.number}</a>'
     return nodes.raw("", link, format="html")
 
 
-class Minutes(SphinxDirective):
+class LessonRole(SphinxRole):
+    """A role about lessons beside the page that asks; `made` raises LookupError for what is not."""
+
+    kind = ""
+
+    def run(self):
+        try:
+            return self.made(), []
+        except LookupError:
+            message = f"no such {self.kind}: {self.text}"
+            told = self.inliner.reporter.error(message, line=self.lineno)
+            return [self.inliner.problematic(self.rawtext, self.rawtext, told)], [told]
+
+    def beside(self, name: str) -> Lesson:
+        page = f"{self.env.docname.rpartition('/')[0]}/{name}"
+        found = lesson(Path(self.env.srcdir), page)
+        if found is None:
+            raise LookupError(page)
+        self.env.note_dependency(str(found.path))
+        return found
+
+
+class Section(LessonRole):
+    """``{section}`page: Heading```."""
+
+    kind = "section"
+
+    def made(self):
+        page, _, heading = self.text.partition(": ")
+        found = self.beside(page)
+        if heading not in found.headings and not (heading == "Check yourself" and found.questions):
+            raise LookupError(heading)
+        target = f"{page}.html#{nodes.make_id(heading)}"
+        return [nodes.reference("", heading, internal=True, refuri=target)]
+
+
+class Exercises(LessonRole):
+    """``{exercise}`page: 1, 3```."""
+
+    kind = "exercise"
+
+    def made(self):
+        page, _, numbers = self.text.partition(": ")
+        found = self.beside(page)
+        by_number = {str(exercise.number): exercise for exercise in found.exercises}
+        asked = [by_number[number] for number in numbers.split(", ")]
+        parts = [title_of(self.env, page), nodes.Text(f", exercise{'s' * (len(asked) > 1)} ")]
+        for exercise in asked:
+            between = " and " if exercise is asked[-1] else ", "
+            parts += [nodes.Text(between)] if exercise is not asked[0] else []
+            parts += [numbered(exercise, found), nodes.Text(f" ({exercise.minutes} min)")]
+        return parts
+
+
+class Open(LessonRole):
+    """``{open}`words <page?widget=name:value>```."""
+
+    kind = "page, widget or place"
+
+    def made(self):
+        found = OPEN.fullmatch(self.text)
+        if not found:
+            raise LookupError(self.text)
+        self.beside(found["page"])
+        return [nodes.reference("", found["words"], internal=True, refuri=address(found))]
+
+
+class Reading(LessonRole):
+    """``{reading}`page page```."""
+
+    kind = "page"
+
+    def made(self):
+        return [nodes.inline(text=time_to_read(list(map(self.beside, self.text.split()))))]
+
+
+class LessonDirective(SphinxDirective):
+    """A directive about all lessons."""
+
+    @property
+    def root(self) -> Path:
+        return Path(self.env.srcdir)
+
+    def depends_on(self, *paths: Path) -> None:
+        for path in paths:
+            self.env.note_dependency(str(path))
+
+
+class Minutes(LessonDirective):
     """``{exercise-minutes}``."""
 
     def run(self):
         return [nodes.paragraph("", rule())]
 
 
-class Listed(SphinxDirective):
+class Listed(LessonDirective):
     """``{exercises} kind``."""
 
     required_arguments = 1
@@ -168,25 +188,126 @@ class Listed(SphinxDirective):
         kind = self.arguments[0]
         if kind not in KINDS:
             raise self.error(f"kind must be among {', '.join(KINDS)}, got {kind!r}")
-        paths = chapters(Path(self.env.srcdir))
-        for path in paths:
-            self.env.note_dependency(str(path))
-        found = (each for path in paths for each in exercises(path) if each.kind == kind)
-        items = [nodes.list_item("", self.line(each)) for each in found]
-        return [nodes.bullet_list("", *items)]
+        self.depends_on(*chapters(self.root))
+        lines = [
+            nodes.list_item("", self.line(exercise, of))
+            for of in lessons(self.root)
+            for exercise in of.exercises
+            if exercise.kind == kind
+        ]
+        return [nodes.bullet_list("", *lines)]
 
-    def line(self, each: Exercise) -> nodes.paragraph:
-        """The chapter as a link, and the exercise, by number and title, as another."""
-        title = re.sub(r"[$`\\]", "", each.title)
-        to = f"{each.page}.html#exercise-{each.number}"
-        asked = nodes.reference("", f"{each.number}: {title}", internal=True, refuri=to)
-        took = nodes.Text(f" ({each.minutes} min)")
-        return nodes.paragraph("", "", chapter(self.env, each.page), nodes.Text(", "), asked, took)
+    def line(self, exercise: Exercise, of: Lesson) -> nodes.paragraph:
+        """The lesson as a link, and the exercise, by number and title, as another."""
+        title = re.sub(r"[$`\\]", "", exercise.title)
+        target = f"{of.name}.html#exercise-{exercise.number}"
+        link = nodes.reference("", f"{exercise.number}: {title}", internal=True, refuri=target)
+        minutes = nodes.Text(f" ({exercise.minutes} min)")
+        return nodes.paragraph("", "", title_of(self.env, of.name), nodes.Text(", "), link, minutes)
+
+
+class Objectives(LessonDirective):
+    """``{objectives} lesson``: its list; without an argument those of all, below links to them."""
+
+    optional_arguments = 1
+
+    def run(self):
+        self.depends_on(self.root / "book" / "objectives.yml", self.root / "book" / "quizzes.yml")
+        if self.arguments:
+            return [self.items(lesson(self.root, f"book/{self.arguments[0]}"), "")]
+        return [
+            node
+            for of in lessons(self.root)
+            if of.objectives
+            for node in (
+                nodes.paragraph("", "", title_of(self.env, of.name)),
+                self.items(of, f"{of.name}.html"),
+            )
+        ]
+
+    def items(self, of: Lesson, at: str) -> nodes.bullet_list:
+        """The list of a lesson's objectives; `at` is its address, "" on its own page."""
+        return nodes.bullet_list("", *(self.item(each, of, at) for each in of.objectives))
+
+    def item(self, objective: Objective, of: Lesson, at: str) -> nodes.list_item:
+        """An objective with links to its tests: "derive ... (exercise 1, question 2)"."""
+        links = [
+            nodes.reference("", test, internal=True, refuri=f"{at}#{of.anchor(test)}")
+            for test in objective.by
+        ]
+        parts = [nodes.Text(objective.can.replace("'", "’") + " (")]
+        for link in links:
+            parts += [link, nodes.Text(", " if link is not links[-1] else ")")]
+        return nodes.list_item("", nodes.paragraph("", "", *parts))
+
+
+class Lecture(LessonDirective):
+    """``{lecture} name``."""
+
+    required_arguments = 1
+
+    def run(self):
+        name = self.arguments[0]
+        self.depends_on(self.root / "book" / "lectures.yml", self.root / "book" / "quizzes.yml")
+        lecture = entries(self.root, "lectures").get(name)
+        if lecture is None:
+            raise self.error(f"book/lectures.yml has no lecture {name!r}")
+        lines = [*self.table(lecture), "", *self.answers(name, lecture["rows"])]
+        home = nodes.container()
+        self.state.nested_parse(StringList(lines, "lectures.yml"), self.content_offset, home)
+        return home.children
+
+    def table(self, lecture: dict) -> list[str]:
+        """What to show and ask, a line a question, and the quiz."""
+        lines = ["| time | show | ask |", "| --- | --- | --- |"]
+        for k, row in enumerate(lecture["rows"], 1):
+            lines.append(f"| {row['minutes']} min | {row['show']} | **{k}.** {row['ask']} |")
+        pages = [p for p in lecture["pages"] if lesson(self.root, f"book/{p}").questions]
+        shown = f"*Check yourself* of {', '.join(f'{{doc}}`{page}`' for page in pages[-2:])}"
+        return [*lines, f"| {QUIZ} min | {shown} | hands first, then somebody gives the reason |"]
+
+    def answers(self, name: str, rows: list[dict]) -> list[str]:
+        """The same questions with their answers, as a fold."""
+        which = f"lecture {name}" if name.isdecimal() else "the class"
+        lines = ['<details class="answer">', f"<summary>Answers of {which}</summary>", ""]
+        for k, row in enumerate(rows, 1):
+            lines += [f"**{k}.** {row['ask']}", ""]
+            for key, words in ANSWERS.items():
+                text = f"{{open}}`{row[key]}`" if key == "open" else row[key]
+                lines.append(f"- *{words}:* {text}")
+            lines.append("")
+        return [*lines, "</details>", ""]
+
+
+class AtAGlance(LessonDirective):
+    """``{lessons-at-a-glance}``."""
+
+    def run(self):
+        self.depends_on(self.root / "book" / "quizzes.yml", *chapters(self.root))
+        rows = [("lesson", "to read", "Check yourself", "exercises (minutes)")]
+        for of in walk(self.root):
+            links = nodes.inline()
+            for exercise in of.exercises:
+                links += [nodes.Text(", ")] if len(links) else []
+                links += [numbered(exercise, of), nodes.Text(f" ({exercise.minutes})")]
+            quiz = nodes.reference(
+                "",
+                f"{len(of.questions)} questions",
+                internal=True,
+                refuri=f"{of.name}.html#check-yourself",
+            )
+            rows.append((title_of(self.env, of.name), time_to_read([of]), quiz, links))
+        return [table(rows)]
 
 
 def setup(app):
-    app.add_directive("exercises", Listed)
-    app.add_directive("exercise-minutes", Minutes)
-    app.add_role("exercise", Asked())
-    app.add_role("section", Section())
+    for name, role in (
+        ("section", Section), ("exercise", Exercises), ("open", Open), ("reading", Reading)
+    ):  # fmt: skip
+        app.add_role(name, role())
+    for name, directive in (
+        ("exercises", Listed), ("exercise-minutes", Minutes), ("objectives", Objectives),
+        ("lecture", Lecture), ("lessons-at-a-glance", AtAGlance),
+    ):  # fmt: skip
+        app.add_directive(name, directive)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -14,8 +14,8 @@ from pathlib import Path
 
 import nbformat
 import yaml
-from dd_lessons import chapters
 from dd_reader import MARK, NOTE
+from lessons import chapters, parts, with_below
 
 # What is written, below the root of the site
 CLAIMS, TEXTS, MAP = "claims.json", "text", "llms.txt"
@@ -113,25 +113,13 @@ def opening(text: str) -> tuple[str, str]:
     return title, re.sub(r"\s+", " ", re.sub(r"<[^>]+>|\[([^]]*)\]\([^)]*\)|[*`]", r"\1", first))
 
 
-def parts(root: Path) -> list[tuple[str, list[str]]]:
-    """Captions of the table of contents, and the pages below each, in its order."""
-    toc = yaml.safe_load((root / "_toc.yml").read_text(encoding="utf-8"))
-
-    def pages_of(entry: dict) -> list[str]:
-        inner = entry.get("sections", []) + entry.get("chapters", [])
-        own = [entry["file"]] if "file" in entry else []
-        return own + [page for below in inner for page in pages_of(below)]
-
-    return [(part["caption"], pages_of(part)) for part in toc["parts"]]
-
-
 def write(app, exception):
     """Write all three, from the readers' notebooks that `dd_reader` has put below ``_sources``.
 
     Only the build of the whole book has them, not that of a few pages.
     """
     root, out = Path(app.srcdir), Path(app.outdir)
-    is_whole = all((root / name).is_file() for name in (CITED, LEDGER))
+    is_whole = all((root / name).is_file() for name in (CITED, LEDGER)) and not app.config.only_page
     if exception is not None or app.builder.format != "html" or not is_whole:
         return
     as_json = json.dumps(claims(root), indent=1, ensure_ascii=False)
@@ -148,12 +136,14 @@ def write(app, exception):
     cited = yaml.safe_load((root / CITED).read_text(encoding="utf-8"))
     about = re.sub(r"\s+", " ", cited["abstract"]).strip()
     contents = SAID.format(title=cited["title"], about=about, claims=CLAIMS, texts=TEXTS)
-    for caption, pages in parts(root):
+    for part in parts(root):
         lines = [
             f"- [{title}]({address}): {first}"
-            for (title, first), address in (texts[name] for name in pages if name in texts)
+            for (title, first), address in (
+                texts[name] for name in with_below(root, part.files()) if name in texts
+            )
         ]
-        contents += f"\n## {caption}\n\n" + "\n".join(lines) + "\n" if lines else ""
+        contents += f"\n## {part.caption}\n\n" + "\n".join(lines) + "\n" if lines else ""
     (out / MAP).write_text(contents, encoding="utf-8")
 
 

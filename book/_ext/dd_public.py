@@ -16,7 +16,7 @@ from pathlib import Path
 from urllib.parse import quote
 from xml.sax.saxutils import escape
 
-from dd_lessons import chapters
+from lessons import lesson
 
 HOST = "https://github.com"
 REMOTE = re.compile(r"(?:https://github\.com/|(?:ssh://)?git@github\.com[:/])(.+?)(?:\.git)?/?")
@@ -74,12 +74,12 @@ def offer(app, page, template, context, doctree):
     source = context.get("sourcename", "").removesuffix(".txt")
     if doctree is None or "header_buttons" not in context or not source:
         return
-    lesson = Path(app.srcdir, f"{page}.ipynb") in chapters(Path(app.srcdir))
+    has_notebook = lesson(Path(app.srcdir), page) is not None and page != app.config.root_doc
     source = Path(app.env.doc2path(page)).relative_to(app.srcdir).as_posix()
     buttons = [
         {"type": "link", "url": url, "text": text, "icon": icon, "tooltip": text,
          "label": f"{text.lower().replace(' ', '-')}-button"}
-        for icon, text, url in links(repository(), page, source, lesson)
+        for icon, text, url in links(repository(), page, source, has_notebook)
     ]  # fmt: skip
     context["header_buttons"].append(
         {"type": "group", "tooltip": "Report, edit, run elsewhere", "icon": "fas fa-comment-dots",

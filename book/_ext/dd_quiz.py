@@ -1,27 +1,22 @@
-"""Questions of understanding, as a section *Check yourself* before *On your own*.
+"""What a lesson's page has before *On your own*: *What you can do now*, and *Check yourself*.
 
-They stand in `book/quizzes.yml`: by lesson, each with answers of which one is `right`, and with a
-`why` for every answer. On the page they are native fieldsets whose explanations are a fold;
-`_static/quiz.js` puts buttons to them. In readers' notebooks they are markdown.
+Objectives and questions come from the book's lists, by `lessons.py`. A question is a native
+fieldset whose explanations are a fold; `_static/quiz.js` puts buttons to it. In readers' notebooks
+both sections are markdown.
 """
 
 from __future__ import annotations
 
 import json
-from hashlib import sha1
 from pathlib import Path
 
-import yaml
 from docutils import nodes
+from lessons import OWN, Lesson, lesson, questions
 from sphinx.util.docutils import SphinxDirective
 
-FILE = "book/quizzes.yml"
-ON_YOUR_OWN = "On your own"  # the heading before which the section is put
-OWN = f"## {ON_YOUR_OWN}\n"
 HEADING = "## Check yourself"
-
-# What is put before `OWN` when a page is read
-CALL = f"{HEADING}\n\n```{{check-yourself}}\n```\n\n"
+CAN_DO = "## What you can do now"
+BEGINS = "After this lesson you can"  # before the list, whose entries go on with it
 
 
 class Tag(nodes.General, nodes.TextElement):
@@ -35,40 +30,16 @@ class Unsearched(nodes.comment):
     """
 
 
-def questions(root: Path, page: str) -> list[dict]:
-    """The questions of a page like "book/dynamics".
-
-    To what the file has of a question comes its `key`, and to each answer its `letter` and its
-    `verdict`. Answers are in an order that depends on their words alone, so that it tells nothing.
-    """
-    path = root / FILE
-    by_lesson = yaml.safe_load(path.read_text(encoding="utf-8")) if path.is_file() else {}
-    return [
-        {**each, "key": digest(each["question"]), "answers": lettered(each["answers"])}
-        for each in by_lesson.get(page.rpartition("/")[2], ())
-    ]
-
-
-def digest(text: str) -> str:
-    """A short key of a text, the same in every build."""
-    return sha1(text.encode()).hexdigest()[:8]
-
-
-def lettered(answers: list[dict]) -> list[dict]:
-    """Answers in the order of their digests, with letters and verdicts ("B is right.")."""
-    shuffled = sorted(answers, key=lambda answer: digest(answer["text"]))
-    return [
-        {**answer, "letter": letter, "verdict": f"{letter} is {'right' if right else 'wrong'}."}
-        for letter, answer in zip("ABCDE", shuffled)
-        for right in [answer.get("right", False)]
-    ]
-
-
-def with_markdown(source: str, root: Path, page: str) -> str:
-    """A markdown cell of a reader's notebook: where it asks for own work, questions first."""
-    asked = questions(root, page) if OWN in source else []
-    parts = [HEADING] if asked else []
-    for number, question in enumerate(asked, 1):
+def with_sections(source: str, of: Lesson) -> str:
+    """A markdown cell of a reader's notebook: where it asks for own work, both sections first."""
+    if OWN not in source:
+        return source
+    parts = []
+    if of.objectives:
+        lines = [f"- {objective.can} ({', '.join(objective.by)})" for objective in of.objectives]
+        parts += [CAN_DO, BEGINS, "\n".join(lines)]
+    parts += [HEADING] if of.questions else []
+    for number, question in enumerate(of.questions, 1):
         answers = question["answers"]
         choices = "\n".join(f"- **{answer['letter']}.** {answer['text']}" for answer in answers)
         whys = "\n".join(f"- **{answer['verdict']}** {answer['why']}" for answer in answers)
@@ -78,34 +49,41 @@ def with_markdown(source: str, root: Path, page: str) -> str:
 
 
 def call(app, page, text):
-    """Put the directive before *On your own* of a notebook that has questions.
+    """Put the directives before *On your own* of a lesson that has objectives or questions.
 
     Sphinx gives a page's source as a list of one text, to be changed in place.
     """
-    if OWN.strip() not in text[0] or not questions(Path(app.srcdir), page):
+    of = lesson(Path(app.srcdir), page)
+    if of is None:
         return
-    if not app.env.doc2path(page).endswith(".ipynb"):
-        return
-    notebook = json.loads(text[0])
-    for cell in notebook["cells"]:
-        if cell["cell_type"] == "markdown":
-            cell["source"] = "".join(cell["source"]).replace(OWN, CALL + OWN)
-    text[0] = json.dumps(notebook)
+    for path in (of.root / "book" / f"{name}.yml" for name in ("objectives", "quizzes")):
+        if path.is_file():  # a part of the book may lack it
+            app.env.note_dependency(str(path))
+    calls = ""
+    if of.objectives:
+        calls += f"{CAN_DO}\n\n{BEGINS}\n\n```{{objectives}} {of.name}\n```\n\n"
+    if of.questions:
+        calls += f"{HEADING}\n\n```{{check-yourself}}\n```\n\n"
+    if calls:
+        notebook = json.loads(text[0])
+        for cell in notebook["cells"]:
+            if cell["cell_type"] == "markdown":
+                cell["source"] = "".join(cell["source"]).replace(OWN, calls + OWN)
+        text[0] = json.dumps(notebook)
 
 
 class CheckYourself(SphinxDirective):
     """``{check-yourself}``: the page's questions, each a form."""
 
     def run(self):
-        root = Path(self.env.srcdir)
-        self.env.note_dependency(str(root / FILE))
-        return [self.made(*each) for each in enumerate(questions(root, self.env.docname), 1)]
+        asked = questions(Path(self.env.srcdir), self.env.docname)
+        return [self.form(*numbered) for numbered in enumerate(asked, 1)]
 
-    def made(self, number: int, one: dict) -> Tag:
+    def form(self, number: int, question: dict) -> Tag:
         """The form of a question: a fieldset of choices, and a fold that says why."""
         choices = [
             self.words("label", answer["text"], f"{answer['letter']}.", ["choice"])
-            for answer in one["answers"]
+            for answer in question["answers"]
         ]
         whys = [
             self.words(
@@ -114,14 +92,14 @@ class CheckYourself(SphinxDirective):
                 answer["verdict"],
                 ["why", "right"] if answer.get("right", False) else ["why"],
             )
-            for answer in one["answers"]
+            for answer in question["answers"]
         ]
-        legend = self.words("legend", one["question"])
+        legend = self.words("legend", question["question"])
         fields = Tag("", "", legend, *choices, tag="fieldset")
         summary = Tag("", "", nodes.Text(f"Answers to question {number}"), tag="summary")
         reasons = Tag("", "", *whys, tag="div", classes=["whys"])
         fold = Tag("", "", summary, reasons, tag="details", classes=["answer"])
-        form_id = f"quiz-{one['key']}"
+        form_id = f"quiz-{question['key']}"
         inside = Unsearched("", "", fields, fold)
         return Tag("", "", inside, tag="form", classes=["quiz"], ids=[form_id])
 

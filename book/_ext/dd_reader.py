@@ -21,10 +21,9 @@ from pathlib import Path
 import latexcodec  # noqa: F401  (it knows TeX's letters: "ulatex")
 import nbformat
 from dd_failures import HYPHEN
-from dd_lessons import chapters
-from dd_objectives import with_markdown as with_objectives
 from dd_public import address, repository
-from dd_quiz import with_markdown
+from dd_quiz import with_sections
+from lessons import CHANGE_THIS, FOLDED, Lesson, contents, lesson, lessons
 from pybtex.database import parse_file
 
 NOTE = (
@@ -49,8 +48,6 @@ if importlib.util.find_spec("workshop") is None:
 QUOTED = re.compile(r"(?m)^quoted\(.*\)$")  # the numbers stand in the text already
 MARK = ('<abbr title="the book\'s number">', "</abbr>")  # around a number in the text
 ARCHIVE = "notebooks.zip"  # beside the first page
-FOLDED = ("remove-cell", "remove-input", "hide-input")
-CHANGE_THIS = "change-this"
 HEADING = re.compile(r"(?m)^#+ .+$")
 ROLE = re.compile(r"\{([\w:-]+)\}`([^`]+)`")
 TARGET = re.compile(r"(?s)(.*?)\s*<([^<>]+)>")
@@ -195,14 +192,13 @@ def _keys(target: str) -> list[str]:
     return [key.strip() for key in target.split(",")]
 
 
-def reader_notebook(notebook, page: str, known: Known, glued: dict):
+def reader_notebook(of: Lesson, known: Known, glued: dict):
     """A notebook of the book as a reader's: see the module."""
-    plain, cells = Plain(page, known, glued), []
-    for cell in notebook.cells:
+    plain, cells = Plain(of.page, known, glued), []
+    for cell in of.notebook.cells:
         if cell.cell_type != "code":
-            told = with_objectives(cell.source, known.root, page)
-            told = plain.text(with_markdown(told, known.root, page))
-            cells.append(nbformat.v4.new_markdown_cell(told))
+            text = plain.text(with_sections(cell.source, of))
+            cells.append(nbformat.v4.new_markdown_cell(text))
             continue
         tags = cell.metadata.get("tags", [])
         if "hide-cell" in tags:
@@ -217,11 +213,11 @@ def reader_notebook(notebook, page: str, known: Known, glued: dict):
             told = f"**{known.figure(figure['name'])}.** {plain.text(figure['caption'].strip())}"
             cells.append(nbformat.v4.new_markdown_cell(told))
     setup = nbformat.v4.new_code_cell(
-        SETUP.format(address=address(repository()), folder=posixpath.dirname(page))
+        SETUP.format(address=address(repository()), folder=posixpath.dirname(of.page))
     )
     setup.metadata = {"jupyter": {"source_hidden": True}, "cellView": "form"}
     cells[1:1] = [nbformat.v4.new_markdown_cell(NOTE), setup]
-    made = nbformat.v4.new_notebook(cells=cells, metadata=notebook.metadata)
+    made = nbformat.v4.new_notebook(cells=cells, metadata=of.notebook.metadata)
     for number, cell in enumerate(made.cells):  # the same text at every build
         cell["id"] = f"cell-{number}"
     return made
@@ -274,8 +270,8 @@ def has_script(notebook) -> bool:
 
 def offer_script(app, page, template, context, doctree):
     """A button for it beside that for the notebook, once the theme has made its own."""
-    source = Path(app.srcdir, f"{page}.ipynb")
-    if not source.is_file() or not has_script(nbformat.read(source, as_version=4)):
+    of = lesson(Path(app.srcdir), page)
+    if of is None or not has_script(of.notebook):
         return
     button = {
         "type": "link",
@@ -292,19 +288,18 @@ def offer_script(app, page, template, context, doctree):
 
 def write(app, exception):
     """Put the readers' notebooks where the pages' download buttons lead."""
-    if exception is not None or app.builder.format != "html":
+    if exception is not None or app.builder.format != "html" or app.config.only_page:
         return
     known = Known(app.env)
     glued_in = Path(app.outdir).parent / "jupyter_execute"
-    for path in (known.root / "book" / "index.ipynb", *chapters(known.root)):
-        page = path.relative_to(known.root).with_suffix("").as_posix()
-        notebook = nbformat.read(path, as_version=4)
-        made = reader_notebook(notebook, page, known, values(glued_in, page))
-        target = Path(app.outdir, "_sources", path.relative_to(known.root))
+    first = lesson(known.root, contents(known.root).root.docname)
+    for of in (first, *lessons(known.root)):
+        made = reader_notebook(of, known, values(glued_in, of.page))
+        target = Path(app.outdir, "_sources", f"{of.page}.ipynb")
         target.parent.mkdir(parents=True, exist_ok=True)
         nbformat.write(made, target)
-        if has_script(notebook):
-            target.with_suffix(".py").write_text(script(notebook), encoding="utf-8")
+        if has_script(of.notebook):
+            target.with_suffix(".py").write_text(script(of.notebook), encoding="utf-8")
     pack(Path(app.outdir), known.root / "book" / "data")
 
 

@@ -13,8 +13,8 @@ Plumbing and bookkeeping are not searched.
 
 from __future__ import annotations
 
-import patches
 from docutils import nodes
+from myst_nb import sphinx_ as myst_nb
 from nbformat import NotebookNode
 from sphinx.transforms.post_transforms import SphinxPostTransform
 
@@ -85,8 +85,20 @@ def visit(translator, node):
     translator.visit_literal_block(node)
 
 
+# MyST-NB 1.4 looks a notebook up in the cache by its cells and their tags, so it cannot be given
+# other tags before: they change between the cache and the parser. Without this, pages show all
+# bookkeeping, and say of no fold how long it is.
+notebook_to_tokens = myst_nb.notebook_to_tokens
+
+
+def tokens(notebook, *rest):
+    """What MyST-NB makes of a notebook, with its cells as on the page."""
+    cells = [as_on_the_page(cell) for cell in notebook.cells]
+    return notebook_to_tokens(NotebookNode({**notebook, "cells": cells}), *rest)
+
+
 def setup(app):
-    patches.parse_cells_as(as_on_the_page)
+    myst_nb.notebook_to_tokens = tokens
     app.add_node(Plumbing, html=(visit, None))
     app.add_post_transform(LeaveOutOfSearch)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,18 +1,16 @@
 """How long the notebooks of this build took, known once all have been executed, and to read.
 
-The role ``{reading}`page page``` is the time that it takes to read some pages. The role
-``{runtime}`words``` is a page's own time in prose, or the words where none was measured; above its
-paragraph it puts the time to read the page. The directive ``{chapter-times}`` is a table of all.
+The role ``{runtime}`words``` is a page's own time in prose, or the words where none was measured;
+above its paragraph it puts the time to read the page. The directive ``{chapter-times}`` is a table
+of all.
 """
 
 from __future__ import annotations
 
-import json
-import re
 from pathlib import Path
 
-from dd_lessons import WORDS_A_MINUTE
 from docutils import nodes
+from lessons import WORDS_A_MINUTE, chapters, lesson, time_to_read
 from myst_nb.sphinx_ import NbMetadataCollector
 from sphinx.addnodes import pending_xref
 from sphinx.transforms.post_transforms import SphinxPostTransform
@@ -83,10 +81,10 @@ class InsertTimes(SphinxPostTransform):
 
     def say_before(self, paragraph: nodes.paragraph) -> None:
         """The time to read this page, in a paragraph before that of its time to run."""
-        path = Path(self.env.doc2path(self.env.docname))
+        minutes = time_to_read([lesson(Path(self.env.srcdir), self.env.docname)])
         pace = f"counted at {WORDS_A_MINUTE} words a minute, with formulas and figures"
-        told = nodes.Text(f" {minutes([path])}, {pace}.")
-        new = nodes.paragraph("", "", nodes.strong(text="Time to read"), told)
+        words = nodes.Text(f" {minutes}, {pace}.")
+        new = nodes.paragraph("", "", nodes.strong(text="Time to read"), words)
         paragraph.parent.insert(paragraph.parent.index(paragraph), new)
 
     def link(self, page: str) -> pending_xref:
@@ -99,6 +97,8 @@ class Directive(SphinxDirective):
     """``{chapter-times}``."""
 
     def run(self):
+        for path in chapters(Path(self.env.srcdir)):
+            self.env.note_dependency(str(path))
         return [ChapterTimes()]
 
 
@@ -107,32 +107,10 @@ def runtime(name, rawtext, text, lineno, inliner, options=None, content=None):
     return [RunTime(rawtext, text)], []
 
 
-def words(path: Path) -> int:
-    """Words of prose in a notebook; a word of code or of a role counts like any other."""
-    cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
-    texts = ("".join(c["source"]) for c in cells if c["cell_type"] == "markdown")
-    return sum(len(re.findall(r"\w+", text)) for text in texts)
-
-
-def reading(name, rawtext, text, lineno, inliner, options=None, content=None):
-    """``{reading}`page page```, pages beside the one that asks."""
-    env = inliner.document.settings.env
-    paths = [Path(env.doc2path(env.docname)).parent / f"{page}.ipynb" for page in text.split()]
-    for path in paths:
-        env.note_dependency(str(path))
-    return [nodes.inline(text=minutes(paths))], []
-
-
-def minutes(paths: list[Path]) -> str:
-    """The time to read some notebooks, to five minutes."""
-    return f"{5 * max(1, round(sum(map(words, paths)) / WORDS_A_MINUTE / 5))} minutes"
-
-
 def setup(app):
     app.add_node(ChapterTimes)
     app.add_node(RunTime)
     app.add_directive("chapter-times", Directive)
     app.add_role("runtime", runtime)
-    app.add_role("reading", reading)
     app.add_post_transform(InsertTimes)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

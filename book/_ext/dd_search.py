@@ -15,7 +15,7 @@ from pathlib import Path
 from docutils import nodes
 from sphinx import addnodes
 
-FILE = "search-texts.js"
+FILE, CALL = "search-texts.js", "searchTexts("
 SENTENCE = re.compile(r"(?<=[.?!:;]) ")  # the space between two sentences
 FIRST = 2  # so many sentences of a section are kept in any case; on evidence pages one
 WORD = re.compile(r"[^\W\d_]{8,}")  # a long word
@@ -91,13 +91,15 @@ def gather(app, doctree, page):
 def write(app, exception):
     """Write the texts of all pages, as a call of the function of `search-order.js`.
 
-    Pages that an earlier build had, and which are gone, are left out.
+    Those of pages that were not written again are in the file that there is.
     """
     if app.builder.format == "html" and exception is None:
-        texts = getattr(app.env, "dd_search_texts", {})
+        path = Path(app.outdir, "_static", FILE)
+        texts = json.loads(path.read_text("utf-8")[len(CALL) : -2]) if path.is_file() else {}
+        texts |= getattr(app.env, "dd_search_texts", {})
         kept = {page: texts[page] for page in sorted(texts) if page in app.env.found_docs}
         as_json = json.dumps(kept, ensure_ascii=False, separators=(",", ":"))
-        Path(app.outdir, "_static", FILE).write_text(f"searchTexts({as_json})\n", encoding="utf-8")
+        path.write_text(f"{CALL}{as_json})\n", encoding="utf-8")
 
 
 def setup(app):

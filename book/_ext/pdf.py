@@ -16,12 +16,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-import yaml
-
 sys.path.append(str(Path(__file__).parents[2] / "tests" / "support"))  # how a browser is found
 import chromium
 from dd_public import repository, site
 from jinja2 import Environment, FileSystemLoader, Template
+from lessons import parts, with_below
 from offers import offer
 from tqdm import tqdm
 
@@ -41,13 +40,12 @@ MOST_PLACES = 9  # a word that is everywhere needs no index
 
 def contents(root: Path, volume: str) -> list[tuple[str, list[str]]]:
     """Parts of a volume, with the pages of each, as the table of contents orders them."""
-    toc = yaml.safe_load((root / "_toc.yml").read_text(encoding="utf-8"))["parts"]
-    numbered = [part for part in toc if part.get("numbered")]
+    numbered = [part for part in parts(root) if part.numbered]
     if volume == "walk":
-        lessons = [(p["caption"], [page["file"] for page in p["chapters"]]) for p in numbered]
-        return [(UNANNOUNCED[0], [*AHEAD]), *lessons, (UNANNOUNCED[1], [*BEHIND])]
-    chapters = [page for part in numbered for page in part["chapters"]]
-    behind = [below["file"] for page in chapters for below in page.get("sections", ())]
+        chapters = [(part.caption, part.files()) for part in numbered]
+        return [(UNANNOUNCED[0], [*AHEAD]), *chapters, (UNANNOUNCED[1], [*BEHIND])]
+    own = {page for part in numbered for page in part.files()}
+    behind = [p for part in numbered for p in with_below(root, part.files()) if p not in own]
     return [("Evidence", behind), (UNANNOUNCED[1], [*LEDGER])]
 
 

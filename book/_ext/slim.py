@@ -42,14 +42,15 @@ ICON_FONTS = re.compile(r"@font-face\s*\{[^}]*\}")  # the theme has no others
 ICON_LETTER = re.compile(r"""(["'])(?:\\[ef][0-9a-f]{3}|[\ue000-\uf8ff])\1""", re.IGNORECASE)
 
 
-def slim(out: Path) -> None:
-    """Rewrite all pages and style sheets of a built site in place."""
+def slim(out: Path, since: float) -> None:
+    """Rewrite in place the pages of a built site that were written since then, and all styles."""
     static = out / "_static"
     icons = Icons(static / ICON_FONT)
     for pattern in UNUSED_FILES:
         for path in static.glob(pattern):
             shutil.rmtree(path) if path.is_dir() else path.unlink()
-    for path in [*out.rglob("*.html"), *static.rglob("*.css")]:
+    pages = [path for path in out.rglob("*.html") if path.stat().st_mtime >= since]
+    for path in [*pages, *static.rglob("*.css")]:
         store = partial(keep, out / "_images", "../" * (len(path.relative_to(out).parts) - 1))
         text = path.read_text(encoding="utf-8")
         text = slim_css(text, store) if path.suffix == ".css" else slim_page(text, icons, store)

@@ -18,9 +18,7 @@ from typing import NamedTuple
 from unittest.mock import patch
 
 import nbformat
-import yaml
-from dd_quiz import OWN
-from dd_reader import CHANGE_THIS, FOLDED
+from lessons import CHANGE_THIS, FOLDED, OWN, entries
 
 from workshop.chapters import exercises as engine
 
@@ -66,8 +64,7 @@ def printed(call) -> str:
 
 def variants(lesson: str) -> list[dict[str, str]] | str:
     """The settings of all variants of a lesson; or why it has none."""
-    every = yaml.safe_load(FILE.read_text(encoding="utf-8"))
-    kept = every.get(lesson, f"{FILE.name} does not name it yet")
+    kept = entries(ROOT, "variants").get(lesson, "it has no variants")
     return kept if isinstance(kept, str) else [{k: str(v) for k, v in one.items()} for one in kept]
 
 

@@ -16,7 +16,7 @@ import random
 import sys
 
 import yaml
-from dd_lessons import chapters
+from lessons import lessons
 from solved import FILE, ROOT, Solved, apart, solve, variants
 
 MANY = 10
@@ -26,14 +26,6 @@ HEAD = """\
 # variants says why.
 
 """
-FIXED = "its questions ask for a design or a rule, and the same answer is right with other settings"
-OWN = "its questions have numbers of their own, or ask for a design that is right with others, too"
-ABSENT = {
-    "trajectories-and-recording": FIXED, "backpropagation": FIXED,
-    "what-lagrange-euler-leaves-out": FIXED, "global-view": FIXED, "rivals": FIXED,
-    "real-arm": FIXED, "run-time": OWN, "stirring": OWN, "networks-that-walk": OWN, "verdict": OWN,
-    "window-size": "other settings give one of a few answers, in steps of half a bit",
-}  # fmt: skip
 
 
 def _link(mass: float, length: float, com: float, inertia: float) -> str:
@@ -75,7 +67,7 @@ CHOICES = {
 
 
 def path(lesson: str):
-    return next(p for p in chapters(ROOT) if p.stem == lesson and p.parent.name == "book")
+    return ROOT / "book" / f"{lesson}.ipynb"
 
 
 def told(solved: list[Solved]) -> list[str]:
@@ -141,8 +133,8 @@ def main() -> int:
         print(f"==> {lesson}", flush=True)
         if asked.find:
             kept[lesson] = found(lesson, asked.only)
-            ordered = {p.stem: p for p in chapters(ROOT) if p.parent.name == "book"}
-            kept = {name: (ABSENT | kept)[name] for name in ordered if name in ABSENT | kept}
+            ordered = [each.name for each in lessons(ROOT)]
+            kept = {name: kept[name] for name in ordered if name in kept}
             text = yaml.safe_dump(kept, sort_keys=False, width=200, allow_unicode=True)
             FILE.write_text(HEAD + text, encoding="utf-8")
         else:

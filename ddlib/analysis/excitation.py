@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import filled, finite_array, integer, like, non_negative, shaped
+from ddlib._check import filled, finite_array, instance, integer, non_negative, shaped
 from ddlib.learning import TrainingSet
 
 
@@ -30,7 +30,7 @@ def ridge_filters(data: TrainingSet, penalties) -> np.ndarray:
     ndarray, shape (penalties, output, joint, width)
         Torque by position, N m/rad.
     """
-    like("data", data, "TrainingSet")
+    instance("data", data, TrainingSet)
     filled("penalties", penalties)
     penalties = shaped("penalties", non_negative("penalties", penalties), "(penalties,)")
     x, y = (a.reshape(len(a), -1) for a in (data.x, data.y))
@@ -71,7 +71,7 @@ def half_penalty(data: TrainingSet, states, joint: int = 0) -> float:
     ValueError
         If the windows' sampling period is not known.
     """
-    like("data", data, "TrainingSet")
+    instance("data", data, TrainingSet)
     if data.step is None:
         raise ValueError("data must know its step: give TrainingSet.from_arrays a step, in s")
     states = shaped("states", finite_array("states", states), f"({len(data.x)}, joint, 3)")

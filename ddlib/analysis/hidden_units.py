@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import filled, finite_array, like, number, shaped
+from ddlib._check import filled, finite_array, instance, number, shaped
 from ddlib.learning import TorqueModel
 from ddlib.metrics import rmss
 
@@ -36,7 +36,7 @@ def transition_width(net_input, margin: float = 0.1) -> np.ndarray:
 
 def net_inputs(model: TorqueModel, windows) -> np.ndarray:
     """Weighted sums of the hidden units, bias included, ``(..., cases, hidden)``."""
-    like("model", model, "TorqueModel")
+    instance("model", model, TorqueModel)
     x, weights = model.scaled(windows), model.weights
     net = np.einsum("...hjw,njw->...nh", weights.hidden_weights, x)
     return net + weights.hidden_bias[..., None, :]
@@ -44,7 +44,7 @@ def net_inputs(model: TorqueModel, windows) -> np.ndarray:
 
 def ablation(model: TorqueModel, windows, torque) -> tuple[list, np.ndarray]:
     """Units of one network, and its RMSS while each of them rests at its mean activity."""
-    like("model", model, "TorqueModel")
+    instance("model", model, TorqueModel)
     shaped("torque", torque, f"({len(model.scaled(windows))}, joint)")
     weights = model.weights
     if weights.hidden_bias.ndim != 1:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import integer, like, number, positive
+from ddlib._check import instance, integer, number, positive
 from ddlib.analysis.filters import savitzky_golay
 from ddlib.dynamics import Arm
 
@@ -29,7 +29,7 @@ def noise_floor(
     ``2 ** bits`` steps a turn, and rounding is taken for white noise with a deviation of a step
     over the root of 12; `torque_noise` is a share of the deviation, `period` is in s.
     """
-    like("arm", arm, "Arm")
+    instance("arm", arm, Arm)
     deviation = positive("deviation", deviation, (2,))
     number("bits", bits, 1.0, 40.0)
     number("torque_noise", torque_noise, 0.0)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import orth
 
-from ddlib._check import finite_array, like
+from ddlib._check import finite_array, instance
 from ddlib.analysis.following import Responses, gains, mean_gradient
 from ddlib.analysis.hidden_units import net_inputs
 from ddlib.learning import TorqueModel
@@ -55,7 +55,7 @@ def unit_responses(outputs, states) -> Responses:
 
 def unit_inputs(model: TorqueModel, windows) -> dict[str, np.ndarray]:
     """Net inputs of the "hidden" units, and what the "direct" weights give to the outputs."""
-    like("model", model, "TorqueModel")
+    instance("model", model, TorqueModel)
     x = model.scaled(windows)
     direct = np.einsum("...ojw,njw->...no", model.weights.direct_weights, x)
     return {"hidden": net_inputs(model, windows), "direct": direct}
@@ -73,7 +73,7 @@ def calibrated(model: TorqueModel, windows, step: float) -> PhysicalGains:
 
     `step` is the sampling period of the windows, s.
     """
-    like("model", model, "TorqueModel")
+    instance("model", model, TorqueModel)
     weights = model.weights
     output = weights.activity(model.scaled(windows))[1]
     slope = (output * (1 - output)).mean(-2)  # of the whole network's outputs

@@ -13,7 +13,7 @@ from ddlib._check import (
     filled,
     finite_array,
     function_of,
-    like,
+    instance,
     number,
     seed_number,
     shaped,
@@ -27,7 +27,7 @@ def input_shares(weights: Weights) -> np.ndarray:
 
     This holds for inputs that vary independently and equally much, as in a cube of random states.
     """
-    like("weights", weights, "Weights")
+    instance("weights", weights, Weights)
     square = finite_array("weights.hidden_weights", weights.hidden_weights) ** 2
     total = square.sum((-2, -1), keepdims=True)
     if not (total > 0).all():
@@ -41,7 +41,7 @@ def transition_range(weights: Weights, margin: float = 0.1) -> np.ndarray:
     Activity goes from `margin` to ``1 - margin`` while an input of weight w moves by
     ``2 ln((1 - margin) / margin) / |w|``; 1 is the whole range of the training set.
     """
-    like("weights", weights, "Weights")
+    instance("weights", weights, Weights)
     number("margin", margin, 0.0, 0.49, open_low=True)
     size = np.abs(finite_array("weights.hidden_weights", weights.hidden_weights))
     with np.errstate(divide="ignore"):
@@ -50,7 +50,7 @@ def transition_range(weights: Weights, margin: float = 0.1) -> np.ndarray:
 
 def transition_centre(model: TorqueModel) -> np.ndarray:
     """Value of each input, in its unit, that brings a hidden unit to one half; others zero."""
-    like("model", model, "TorqueModel")
+    instance("model", model, TorqueModel)
     weights = model.weights.hidden_weights
     zero = model.scaled(np.zeros((1, *weights.shape[-2:])))[0]
     net = np.einsum("...hjw,jw->...h", weights, zero) + model.weights.hidden_bias
@@ -60,7 +60,7 @@ def transition_centre(model: TorqueModel) -> np.ndarray:
 
 def responses(model: TorqueModel, values) -> np.ndarray:
     """Activities, ``(..., joint, width, points, hidden)``, along one input, the others at zero."""
-    like("model", model, "TorqueModel")
+    instance("model", model, TorqueModel)
     values = shaped("values", values, "(points,)")
     filled("values", values)
     shape = model.weights.hidden_weights.shape[-2:]

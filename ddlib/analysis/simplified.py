@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import filled, finite_array, like, non_negative, number, shaped, triple
+from ddlib._check import filled, finite_array, instance, non_negative, number, shaped, triple
 from ddlib.dynamics import Arm
 from ddlib.effects import IDEAL, Effects
 from ddlib.metrics import rmss
@@ -22,9 +22,9 @@ def share_of_velocity_terms(
 
     The path is travelled `speed` times faster; of the effects, friction is part of the torque.
     """
-    like("arm", arm, "Arm")
+    instance("arm", arm, Arm)
     triple("trajectory", trajectory)
-    like("effects", effects, "Effects")
+    instance("effects", effects, Effects)
     number("speed", speed, 0.0, open_low=True)
     qd = speed * trajectory.qd
     terms = arm.torque_terms(trajectory.q, qd, speed**2 * trajectory.qdd)
@@ -37,7 +37,7 @@ def share_of_other_joint(arm: Arm, trajectory: Trajectory, gears, rotor: float) 
 
     Behind a gear of ratio N a rotor of inertia J (`rotor`, kg m^2) acts like an inertia N^2 J.
     """
-    like("arm", arm, "Arm")
+    instance("arm", arm, Arm)
     triple("trajectory", trajectory)
     filled("gears", gears)
     shaped("gears", gears, "(gears,)")
@@ -51,7 +51,7 @@ def share_of_other_joint(arm: Arm, trajectory: Trajectory, gears, rotor: float) 
 
 def linear_residual(arm: Arm, q, qd, qdd) -> float:
     """RMSS that the best linear function of the states leaves of the torque, joints pooled."""
-    like("arm", arm, "Arm")
+    instance("arm", arm, Arm)
     finite_array("q", q, 2)
     finite_array("qd", qd, 2)
     finite_array("qdd", qdd, 2)

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator
 
-from ddlib._check import finite_array, like, number, one_of, shaped
+from ddlib._check import finite_array, instance, number, one_of, shaped
 from ddlib.analysis import decompose
 from ddlib.figures.style import (
     COLOURS,
@@ -27,7 +27,7 @@ from ddlib.learning import Weights
 
 def network_diagram(weights: Weights) -> Illustration:
     """Figure 3-1: the network's layers and which of them are connected."""
-    like("weights", weights, "Weights")
+    instance("weights", weights, Weights)
     hidden = weights.hidden_weights.shape[-3]
     joints, width, outputs = 2, weights.width, weights.output_bias.shape[-1]
 
@@ -120,7 +120,7 @@ def relative_weights(
     to : Weights, optional
         The network whose largest weights these are; default: `weights`. Larger ones are cut.
     """
-    like("weights", weights, "Weights")
+    instance("weights", weights, Weights)
     one_of("scale", scale, ("network", "row"))
     to = weights if to is None else to
     for given in (weights, to):
@@ -198,7 +198,7 @@ def hinton(weights: Weights, scale: str = "network") -> Illustration:
         What the largest square stands for: the largest weight of the network, as in the paper,
         or that of each row (`relative_weights`).
     """
-    like("weights", weights, "Weights")
+    instance("weights", weights, Weights)
     relative_weights(weights, scale)  # before any work
     hidden, width = len(weights.hidden_bias), weights.width
     across, down = hinton_on(Figure().subplots(), weights, scale)

@@ -7,7 +7,7 @@ import torch
 from torch import nn
 from tqdm.auto import tqdm
 
-from ddlib._check import finite_array, flag, like, shaped
+from ddlib._check import finite_array, flag, instance, shaped
 from ddlib.learning.network import INITIAL, WEIGHT_NAMES, TorqueModel, Weights
 from ddlib.learning.training import (
     History,
@@ -16,7 +16,6 @@ from ddlib.learning.training import (
     check_descent,
     recorded_epochs,
 )
-from ddlib.learning.windows import Scaler
 
 _BLOCK = 4096  # cases whose gradients are held at once
 
@@ -66,7 +65,6 @@ class TorqueNetwork(nn.Module):
             for part in ("low", "high", "target"):
                 array = np.array(getattr(scaler, part), float)
                 self.register_buffer(f"{name}_{part}", torch.from_numpy(array))
-        self.step = model.step
 
     def forward(self, windows):
         """Torques, N m, ``(..., output)``, for windows, rad, ``(..., joint, width)``.
@@ -86,18 +84,6 @@ class TorqueNetwork(nn.Module):
         target, span = self.outputs_target, self.outputs_high - self.outputs_low
         torque = self.outputs_low + (output - target[0]) * (span / (target[1] - target[0]))
         return torque.reshape(torque.shape[:-2] + cases + torque.shape[-1:])
-
-    def model(self) -> TorqueModel:
-        """The way back, after more training in PyTorch, say."""
-
-        def plain(name):
-            return getattr(self, name).detach().cpu().double().numpy().copy()
-
-        scalers = (
-            Scaler(plain(f"{name}_low"), plain(f"{name}_high"), tuple(plain(f"{name}_target")))
-            for name in ("inputs", "outputs")
-        )
-        return TorqueModel(Weights(*map(plain, WEIGHT_NAMES)), *scalers, self.step)
 
 
 def module_gradient(module: nn.Module, windows) -> np.ndarray:
@@ -163,7 +149,7 @@ def train(
     TrainingDiverged
         If the error is no longer finite; if it is, but ends above 1: a `WorseThanMean` warning.
     """
-    like("network", network, "Module")
+    instance("network", network, nn.Module)
     flag("progress", progress)
     check_descent(rate, momentum, epochs)
     x, y = finite_array("x", x), finite_array("y", y)

@@ -10,7 +10,7 @@ import numpy as np
 import torch
 from tqdm.auto import tqdm
 
-from ddlib._check import cases_of, every, finite_array, flag, integer, like, shaped
+from ddlib._check import cases_of, finite_array, flag, instance, integer, shaped
 from ddlib.learning._packed import product_with
 from ddlib.learning._threads import in_threads
 from ddlib.learning.network import TorqueModel, Weights, from_rows
@@ -84,10 +84,10 @@ def train_ensemble(
     TrainingInterrupted
         On Ctrl-C or the kernel's stop, within one epoch; it holds the networks as they are then.
     """
-    like("weights", weights, "Weights")
-    like("data", data, "TrainingSet")
+    instance("weights", weights, Weights)
+    instance("data", data, TrainingSet)
     flag("progress", progress)
-    every("snapshots", snapshots, "integer")
+    shaped("snapshots", snapshots, "(epochs,)")
     if weights.hidden_bias.ndim != 2:
         raise ValueError(
             "weights must have one leading axis of members (of one network: weights[None]), got "

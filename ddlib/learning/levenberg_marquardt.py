@@ -19,7 +19,7 @@ import numpy as np
 import torch
 from tqdm.auto import tqdm
 
-from ddlib._check import cases_of, finite_array, flag, integer, like, number, shaped
+from ddlib._check import cases_of, finite_array, flag, instance, integer, number, shaped
 from ddlib.learning._threads import in_threads
 from ddlib.learning.descent import WORKERS
 from ddlib.learning.gauss_newton import Objective
@@ -105,8 +105,8 @@ def solve(
     TrainingInterrupted
         On Ctrl-C or the kernel's stop, within one step; it holds the networks as they are then.
     """
-    like("weights", weights, "Weights")
-    like("data", data, "TrainingSet")
+    instance("weights", weights, Weights)
+    instance("data", data, TrainingSet)
     flag("progress", progress)
     cases_of("test", test)
     if not isinstance(whiten, bool):

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, like, number, seed_number, shaped, told
+from ddlib._check import finite_array, instance, integer, number, seed_number, shaped, told
 from ddlib.learning.windows import Scaler
 
 INITIAL = 0.03
@@ -215,7 +215,7 @@ def from_rows(rows: np.ndarray, output_weights: np.ndarray, window: tuple) -> We
 def _joined(join, parts) -> Weights:
     """What numpy's `join` makes of several ensembles' matrices."""
     for part in parts:
-        like("parts", part, "Weights")
+        instance("parts", part, Weights)
     if len({(part.output_weights.shape[-2:], part.rows.shape[-1]) for part in parts}) != 1:
         raise ValueError("parts must be networks of one size, and one at least")
     if join is np.concatenate and any(part.hidden_bias.ndim < 2 for part in parts):
@@ -236,8 +236,8 @@ class TorqueModel:
 
     def scaled(self, windows) -> np.ndarray:
         """Windows in rad, ``(cases, joint, width)``, scaled for the input units."""
-        like("inputs", self.inputs, "Scaler")
-        like("weights", self.weights, "Weights")
+        instance("inputs", self.inputs, Scaler)
+        instance("weights", self.weights, Weights)
         shaped(
             "windows", windows, "(cases, {}, {})".format(*self.weights.hidden_weights.shape[-2:])
         )
@@ -245,8 +245,8 @@ class TorqueModel:
 
     def torque(self, windows) -> np.ndarray:
         """Torques, N m, ``(..., cases, joint)``, for windows, rad, ``(cases, joint, width)``."""
-        like("weights", self.weights, "Weights")
-        like("outputs", self.outputs, "Scaler")
+        instance("weights", self.weights, Weights)
+        instance("outputs", self.outputs, Scaler)
         return self.outputs.unscale(self.weights.activity(self.scaled(windows))[1])
 
     def __repr__(self) -> str:

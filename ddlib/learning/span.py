@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddlib._check import every, finite_array, integer, like, non_negative, number, shaped
+from ddlib._check import finite_array, instance, integer, non_negative, number, shaped
 from ddlib.learning.network import Weights, from_rows
 from ddlib.learning.training import WARM_UP_MOMENTUM, TrainingSet
 
@@ -39,7 +39,7 @@ class Directions:
     @classmethod
     def of(cls, data: TrainingSet) -> Directions:
         """Directions with the sign that makes the last sample of their main joint positive."""
-        like("data", data, "TrainingSet")
+        instance("data", data, TrainingSet)
         cases, values, axes = np.linalg.svd(with_ones(data.x), full_matrices=False)
         filters = axes[:, :-1].reshape(len(axes), *data.x.shape[1:])
         main = (filters**2).sum(-1).argmax(-1)
@@ -53,7 +53,7 @@ class Directions:
 
     def along(self, weights: Weights) -> np.ndarray:
         """Components of every unit's weights and bias, ``(..., unit, directions)``."""
-        like("weights", weights, "Weights")
+        instance("weights", weights, Weights)
         return weights.rows @ self.axes.T
 
     def energy(self, weights: Weights, start: Weights | None = None) -> np.ndarray:
@@ -81,7 +81,7 @@ def effective_steps(rates, epochs, momentum: float = 0.0, warm_up: int = 0) -> n
     momentum, warm_up
         As in `train_ensemble`.
     """
-    every("epochs", epochs, "integer")
+    shaped("epochs", epochs, "(points,)")
     rates = shaped("rates", non_negative("rates", rates), "(modes,)")
     number("momentum", momentum, 0.0, 0.999)
     integer("warm_up", warm_up, 0)
@@ -111,7 +111,7 @@ def jacobian(weights: Weights, x) -> np.ndarray:
 
     Parameters are its `Weights.rows` one after the other, then the hidden-to-output weights.
     """
-    like("weights", weights, "Weights")
+    instance("weights", weights, Weights)
     hidden, output = weights.activity(x)
     own = np.eye(output.shape[-1])
     shape = (len(hidden), len(own), -1)
@@ -125,7 +125,7 @@ def jacobian(weights: Weights, x) -> np.ndarray:
 
 def with_change(weights: Weights, change) -> Weights:
     """One network plus changes of its parameters, ``(..., parameter)``, ordered as `jacobian`."""
-    like("weights", weights, "Weights")
+    instance("weights", weights, Weights)
     start, change = weights.rows, finite_array("change", change)
     shaped("change", change, f"(..., {start.size + weights.output_weights.size})")
     first = start + change[..., : start.size].reshape(*change.shape[:-1], *start.shape)
@@ -147,8 +147,8 @@ class Lazy:
     """
 
     def __init__(self, weights: Weights, data: TrainingSet):
-        like("weights", weights, "Weights")
-        like("data", data, "TrainingSet")
+        instance("weights", weights, Weights)
+        instance("data", data, TrainingSet)
         if weights.hidden_bias.ndim != 1:
             raise ValueError(f"weights must be of one network, got {weights}")
         self._start, self._targets = weights, data.y

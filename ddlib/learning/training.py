@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ddlib._check import along, filled, integer, like, number, pair, shaped, varies
+from ddlib._check import along, filled, instance, integer, number, pair, shaped, varies
 from ddlib.learning.windows import Scaler, sliding_windows
-
-if TYPE_CHECKING:
-    from ddlib.simulation import Recording
+from ddlib.simulation import Recording
 
 # The page Provenance shows constants with the notes below them.
 TARGET_RANGE = (0.2, 0.8)
@@ -78,7 +75,7 @@ class TrainingSet:
 
 def cases(recording: Recording, width: int) -> tuple[np.ndarray, np.ndarray]:
     """Windows, rad, and torques, N m, of a recording's motions, ``cases`` being the first axis."""
-    like("recording", recording, "Recording")
+    instance("recording", recording, Recording)
     recording = recording.for_windows(width)
     windows = sliding_windows(recording.q, width, recording.motion)
     torque = recording.tau[..., recording.motion, :]

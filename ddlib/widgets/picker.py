@@ -10,7 +10,7 @@ import numpy as np
 import traitlets as t
 from scipy.spatial import ConvexHull
 
-from ddlib._check import finite_array, like, number, shaped
+from ddlib._check import finite_array, instance, number, shaped
 from ddlib.effects import IDEAL
 from ddlib.figures import JOINTS
 from ddlib.learning import TorqueModel, sliding_windows
@@ -130,7 +130,7 @@ class TrajectoryPicker(CurveWidget):
         trajectories_deg=APPENDIX_I,
         **options,
     ):
-        like("setup", setup, "Setup")
+        instance("setup", setup, Setup)
         if not isinstance(models, Mapping | None):
             raise TypeError(f"models must map names to single networks, got {models!r:.80}")
         models = dict(models or {})

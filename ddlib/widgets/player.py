@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import traitlets as t
 
-from ddlib._check import filled, finite_array, integer, like, told
+from ddlib._check import filled, finite_array, instance, integer, told
 from ddlib.learning import TorqueModel
 from ddlib.setups import errors
 from ddlib.simulation import Recording
@@ -56,8 +56,8 @@ class TrainingPlayer(_HintonWidget):
         self, epochs, model: TorqueModel, recording: Recording, member: int = 0, **options
     ):
         filled("epochs", epochs)
-        like("model", model, "TorqueModel")
-        like("recording", recording, "Recording")
+        instance("model", model, TorqueModel)
+        instance("recording", recording, Recording)
         epochs = finite_array("epochs", epochs).astype(int)
         if epochs.ndim != 1 or (np.diff(epochs) <= 0).any() or epochs[0] < 0:
             raise ValueError(f"epochs must increase from 0 or later, got {told(epochs)}")

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from ddlib.figures import COLOURS
+
 _STATIC = Path(__file__).with_name("static")
 _IMPORT = re.compile(r'^import (?:\{[^}]*\} from )?"([^"]+)";\n', re.M)
 
@@ -36,5 +38,12 @@ def bundle(*names: str | Path) -> str:
 
 
 def styles(*names: str | Path) -> str:
-    """The style sheet of all widgets, then others of the folder `static` or by full paths."""
-    return "\n".join((_STATIC / n).read_text(encoding="utf-8") for n in ("curves.css", *names))
+    """The style sheet of all widgets, then others of the folder `static` or by full paths.
+
+    Colours are those of figures: ``var(--c0)`` and so on, and ``var(--colour)`` in what has the
+    class ``c0`` and so on.
+    """
+    hues = "".join(f"--c{k}: {colour}; " for k, colour in enumerate(COLOURS))
+    own = [f".ddlib-curves .c{k} {{ --colour: var(--c{k}); }}" for k in range(len(COLOURS))]
+    sheets = [(_STATIC / name).read_text(encoding="utf-8") for name in ("curves.css", *names)]
+    return "\n".join([f".ddlib-curves {{ {hues}}}", *own, *sheets])

@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 import traitlets as t
 
-from ddlib._check import like
+from ddlib._check import instance
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from ddlib.effects import (
@@ -84,7 +84,7 @@ class RealArmSwitches(CurveWidget):
     loop = t.Dict(help="plant, gains, reference and strengths", read_only=True).tag(sync=True)
 
     def __init__(self, arm: Arm = CMU_DD_ARM_II, **options):
-        like("arm", arm, "Arm")
+        instance("arm", arm, Arm)
         ideal = _shown(_ideal_recording(arm))
         super().__init__(
             lambda **levels: _curves(arm, **levels),

@@ -1,7 +1,6 @@
 """Feedback-error learning: the identity with Slotine & Li, and what it learns."""
 
 import numpy as np
-import pytest
 
 from beyond.control.adaptive import PARAMETERS, SlotineLi, Watched
 from beyond.control.feedback_error import (
@@ -38,16 +37,6 @@ def test_it_is_slotine_and_li_at_the_desired_state_with_another_gain():
     np.testing.assert_allclose(runs[0].tau_true, runs[1].tau_true, rtol=1e-12, atol=1e-11)
     _, weights, estimates = both((40.0, 30.0), at="measured")
     assert np.abs(weights - estimates).max() > 1e-3
-
-
-def test_bad_shapes_are_refused():
-    with pytest.raises(ValueError, match="weights"):
-        learner(weights=np.zeros(4))
-    with pytest.raises(ValueError, match="rate"):
-        learner(rate=-RATE)
-    bad = FeedbackErrorLearning(lambda q, qd, qdd: np.zeros(3), RATE, np.zeros(5), TEACHER)
-    with pytest.raises(ValueError, match=r"terms\(q, qd, qdd\) must have shape"):
-        record(ARM, bad, (10.0, 10.0), duration=0.5, rest=0.1)
 
 
 def test_a_memory_learns_its_motion_and_no_other():

@@ -23,5 +23,3 @@ def test_trials_to_half_the_error(monkeypatch):
     assert learning.halved("y").text == "no seed"
     loaded = [np.median(learning.family("x", when)) for when in ("with the load", "at the end")]
     assert loaded == [30, 10]
-    with pytest.raises(ValueError, match="setup"):
-        learning.part("motion", "nowhere")

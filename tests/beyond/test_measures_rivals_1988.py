@@ -36,6 +36,31 @@ def test_full_tables_are_counted_against_the_network(plant):
     assert measures.stored("multilinear").value == pytest.approx(2 * 3**6 / 536)
     assert "8 cells an axis: 524,288 numbers, 2.1 MB" in measures.stored("constant").text
     assert measures.reached().value == 0.25
-    plant["rivals-tables"]["full"]["constant"] = [1.0, 1.0, 1.0]
-    with pytest.raises(ValueError, match=r"way must reach 0\.1"):
-        measures.stored("constant")
+
+
+def test_collisions_and_slots_are_counted_in_visited_cubes(plant):
+    shared = {"kind": POSITIONS, "layers": 32, "width": 0.5, "visited": [200, 200]}
+    runs = ((None, [1.0, 1.0], False), (50, [9.0, 9.0], True), (100, [1.4, 1.4], False),
+            (400, [1.1, 1.1], False), (25, [9.0, 9.0], True))  # fmt: skip
+    plant["rivals-cmac"] = {"rows": [
+        shared | {"slots": slots, "again": again, "diverged": [diverged] * 2}
+        for slots, again, diverged in runs
+    ]}  # fmt: skip
+    assert measures.diverges_at().value == 50 / 200
+    assert measures.hashing_saves().value == 100 / 200  # 1.4 is at most 1.5 times 1
+
+
+def row(order, ridge, outside, six, count):
+    errors = {"outside": [outside] * 3, "trajectory 6": [six] * 3, "count": [count] * 3}
+    return {"kind": POSITIONS, "basis": "chebyshev", "order": order, "ridge": ridge} | errors
+
+
+def test_horns_and_medium_of_polynomials(plant):
+    rows = [row(1, 0, 2.0, 0.5, 14), row(2, 0, 1.0, 0.05, 67), row(3, 0, 8.0, 0.04, 168)]
+    rows += [row(3, 1e-4, 4.0, 0.3, 168), row(3, 1e-2, 0.5, 0.2, 168)]
+    chosen = {"chebyshev": [{"order": 2, "ridge": 0}] * 3}
+    plant["rivals-bases"] = {"rows": rows, "chosen": chosen}
+    assert measures.medium().value == 0.5  # the lowest degree is the better end
+    assert measures.penalty().value == 16
+    assert measures.good().value == 0.05
+    assert measures.coefficients().value == 67 / 536  # 0.05 is below 0.1, the printed error

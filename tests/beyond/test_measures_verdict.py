@@ -26,8 +26,6 @@ def test_agreement_against_all_permutations():
     assert found.same == 4 and found.pairs == 5
     assert found.expected == pytest.approx(np.mean(every))
     assert found.chance == pytest.approx(np.mean(np.array(every) >= 4), abs=0.02)
-    with pytest.raises(ValueError, match="pairs must be two or more"):
-        verdict._agreement([("a", "a")])
 
 
 def test_expected_changes_are_the_shares_that_disagree(monkeypatch):

@@ -103,9 +103,3 @@ def test_desired_windows_are_learnt_with_the_feedback():
     wanted = run.reference.q[centre - 2 : centre + 3].T
     np.testing.assert_allclose(window, wanted, atol=1e-12)
     np.testing.assert_allclose(feedback, run.tau_true[centre], rtol=1e-9)
-
-
-def test_values_out_of_range_are_refused():
-    for name, bad in {"width": 4, "teacher": "me", "every": 0}.items():
-        with pytest.raises(ValueError, match=name):
-            OnlineFeedforward(OnlineDescent(model(), 0.1), FEEDBACK, **{"width": 5, name: bad})

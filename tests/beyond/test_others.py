@@ -3,7 +3,6 @@
 import hashlib
 
 import numpy as np
-import pytest
 
 from beyond import others
 
@@ -31,12 +30,3 @@ def test_characters_are_sampled_evenly():
     begins = np.cumsum(found.length)[:-1]
     steps = np.delete(np.diff(found.t), begins - 1)
     np.testing.assert_allclose(steps, found.STEP, atol=1e-9)
-
-
-def test_what_is_not_there_is_refused():
-    for make, message in (
-        (lambda: others.read_characters().of(("e", "B")), r"labels must be some of b, .*, got \["),
-        *((lambda rate=rate: others.staubli().at(rate), "rate must") for rate in (0, 3000, 300)),
-    ):
-        with pytest.raises(ValueError, match=message):
-            make()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from beyond.rivals.protocol import Cases, Estimating, NotFitted, Rival, trial
-from ddlib.dynamics import CMU_DD_ARM_II, Operations
+from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.trajectories import OutsideFamilyWarning, pick_and_place
 
 STEP = 0.01
@@ -28,9 +28,6 @@ class Linear(Rival):
     def count(self):
         return self.matrix.size
 
-    def operations(self):
-        return Operations(self.matrix.size, self.matrix.size - 2)
-
 
 def windows(extents=(30.0, 20.0), width=11):
     q, qd, qdd = pick_and_place(extents, TIMES)
@@ -49,7 +46,6 @@ def test_states_estimated_from_windows_are_those_of_the_motion():
     wanted = alone.torque(data.estimated().x)
     np.testing.assert_allclose(within.torque(data.x), wanted, rtol=1e-9, atol=1e-9)
     assert within.count() == alone.count() + 3 * 11
-    assert within.operations() == (12 + 2 * 3 * 11, 10 + 2 * 3 * 10, 0, 0)
 
 
 def test_a_trial_measures_errors_by_each_sets_own_deviation():
@@ -61,7 +57,7 @@ def test_a_trial_measures_errors_by_each_sets_own_deviation():
     for name, n in (("all", 140), ("half", 70)):
         error = (left[:n] ** 2).mean(0) / exact.torque[:n].var(0)
         assert found.rmss[name] == pytest.approx(np.sqrt(error.mean()), rel=1e-9)
-    assert found.count == 12 and found.operations == (12, 10, 0, 0) and found.seconds >= 0
+    assert found.count == 12
 
 
 def test_inputs_beyond_the_training_box_are_told_and_counted():
@@ -77,22 +73,11 @@ def test_inputs_beyond_the_training_box_are_told_and_counted():
         trial(Linear(), exact, {"far": Cases(far, exact.torque[:3], "states", STEP)})
 
 
-SEEN, EXACT = windows()
-BAD = np.where(np.arange(140)[:, None, None] == 0, np.nan, EXACT.x)
-
-
 def test_what_makes_no_sense_is_refused():
-    for make, message in (
-        (lambda: Linear().fit(SEEN), "data must be states for Linear, got windows"),
-        (lambda: Linear("windows").fit(Cases(SEEN.x[:0], SEEN.torque[:0], "windows", STEP)), "one"),
-        (lambda: Linear("windows").fit(SEEN).torque(SEEN.x[:, :1]), r"shape \(cases, 2, 11\)"),
-        (lambda: Cases(SEEN.x, SEEN.torque, "states", STEP), r"x must have .* \(cases, joint, 3\)"),
-        (lambda: Cases(SEEN.x, SEEN.torque[:-1], "windows", STEP), "torque"),
-        (lambda: EXACT.estimated(), "kind must be 'windows'"),
-        (lambda: Estimating(Linear("windows")), "rival must be one of states"),
-        (lambda: Linear().fit(EXACT).torque(BAD), "finite"),
-    ):
-        with pytest.raises(ValueError, match=message):
-            make()
+    seen, exact = windows()
+    with pytest.raises(ValueError, match="data must be states for Linear, got windows"):
+        Linear().fit(seen)
+    with pytest.raises(ValueError, match=r"shape \(cases, 2, 11\)"):
+        Linear("windows").fit(seen).torque(seen.x[:, :1])
     with pytest.raises(NotFitted):
-        Linear().torque(EXACT.x)
+        Linear().torque(exact.x)

@@ -87,17 +87,3 @@ def test_states_outside_the_table_are_refused_by_name_or_taken_to_the_edge(make)
     with pytest.warns(OutsideFamilyWarning, match="1 of 5 inputs"):
         found = kind.torque(far)
     np.testing.assert_allclose(found, kind.torque(edge))
-
-
-THREE = Cases(np.zeros((5, 3, 3)), np.zeros((5, 3)), "states", 0.01)
-
-
-def test_what_makes_no_sense_is_refused():
-    for make, message in (
-        (lambda: CellTable(4, "tasks"), "over must be one of"),
-        (lambda: Nearest(BOX[::-1]), "limits must have least values below"),
-        (lambda: Nearest(BOX).fit(THREE), r"limits must be of shape \(2, 3, 3\)"),
-        (lambda: GridTable().fit(THREE), "at most 2 joints for a multilinear table, got 3"),
-    ):
-        with pytest.raises(ValueError, match=message):
-            make()

@@ -20,7 +20,8 @@ def test_a_table_a_polynomial_and_a_cmac_measured_anew():
     for name, error in again.items():
         assert error == pytest.approx(row[name][0], rel=1e-3, abs=1e-9)
     (row,) = rows("rivals-bases", kind=POSITIONS, basis="chebyshev", order=2, ridge=1e-4)
-    again = study._by_ridge(study.Polynomial(2), today["training"], today)
+    make, _ = study._BASES["chebyshev"]
+    again = study._by_ridge(make, 2, today["training"], today)
     assert again[study._RIDGES.index(1e-4)]["outside"] == pytest.approx(row["outside"][0], rel=1e-3)
     setting = {"layers": 32, "width": 0.5, "slots": 32}
     (row,) = rows("rivals-cmac", kind=POSITIONS, **setting)

@@ -2,8 +2,6 @@
 
 import numpy as np
 
-from beyond.rivals.identified import Linear
-from beyond.rivals.tables import Nearest
 from beyond.studies import lineup, rivals
 from ddlib.learning import Weights
 from ddlib.setups import STATE_FEEDBACK, inside_hull
@@ -15,26 +13,6 @@ def test_the_budget_is_the_papers_network():
     assert weights.count(biases=True) + 4 == rivals.NUMBERS_BUDGET
     rows = [r for r in results.read("rivals")["rows"] if r["rival"] == lineup.REFERENCE]
     assert max(r["count"] for r in rows) == rivals.NUMBERS_BUDGET
-
-
-def test_the_study_counts_and_keeps(monkeypatch, tmp_path):
-    nearest = lineup._Line(lambda *_: Nearest(beyond="edge"), (1,), "cases", "tables", 1)
-    filters = lineup._Line(lambda n, _: Linear(width=n, ridge=0.0), (5, 21), "samples", "filters")
-    monkeypatch.setattr(rivals, "LINES", {"nearest": nearest, "filter": filters})
-    monkeypatch.setattr(rivals, "_RECORDINGS", 2)
-    monkeypatch.setattr(rivals, "_TORQUES", tmp_path / "torques.npz")
-    rows = {(r["rival"], r["inputs"], r["size"]): r for r in rivals._rivals()["rows"]}
-    names = [("nearest", inputs, 1) for inputs in rivals._INPUTS]
-    assert set(rows) == {*names, ("filter", "positions", 5), ("filter", "positions", 21)}
-    assert len(rows["nearest", "positions", 1]["seconds"]) == 1
-    wide = rows["filter", "positions", 21]
-    assert len(wide["errors"]["outside"]) == 2 and wide["count"] == 86
-    assert wide["errors"]["trajectory 6"][0] != wide["errors"]["trajectory 6"][1]  # other noise
-    with np.load(tmp_path / "torques.npz") as kept:
-        assert kept["names"].tolist() == ["measured", "nearest", "filter"]
-        _, asked = rivals.recorded(1)
-        wanted = asked.torque.reshape(rivals.SQUARE_POINTS**2, 30, 2)
-        np.testing.assert_allclose(kept["torque"][0], wanted, rtol=1e-3, atol=1e-3)
 
 
 def test_the_square_is_recorded_on_a_grid_up_to_45_degrees():

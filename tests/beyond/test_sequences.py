@@ -1,12 +1,9 @@
-"""Convolutions and recurrent units against plain sums."""
+"""Convolutions along the window against plain sums."""
 
 import numpy as np
-import pytest
-import torch
 from scipy.special import expit
-from torch.utils.flop_counter import FlopCounterMode
 
-from beyond.rivals.networks import Convolution, Recurrent
+from beyond.rivals.networks import Convolution
 from beyond.rivals.protocol import Cases
 
 
@@ -50,35 +47,3 @@ def test_convolutions_are_sums_along_the_window():
     wanted = data.torque.mean(0) + data.torque.std(0) * y
     np.testing.assert_allclose(rival.torque(data.x), wanted, atol=1e-4)
     assert rival.count() == sum(x.size for x in w.values()) + 8 + 4
-    with FlopCounterMode(display=False) as counter, torch.no_grad():
-        rival.network(torch.zeros(1, 4, 11))
-    units = 3 * (7 + 3)
-    assert rival.operations().multiplications == counter.get_total_flops() / 2 + units
-
-
-def test_the_recurrent_unit_is_gated():
-    data = windows(40)
-    rival = Recurrent(4, epochs=3).fit(data)
-    w = {name.removeprefix("recurrent."): x for name, x in arrays(rival.network).items()}
-    h = np.zeros((40, 4))
-    for x in np.moveaxis(scaled(rival, data.x), -1, 0):
-        inner = x @ w["weight_ih_l0"].T + w["bias_ih_l0"]
-        outer = h @ w["weight_hh_l0"].T + w["bias_hh_l0"]
-        reset, update = (expit(inner[:, k : k + 4] + outer[:, k : k + 4]) for k in (0, 4))
-        h = (1 - update) * np.tanh(inner[:, 8:] + reset * outer[:, 8:]) + update * h
-    y = h @ w["output.weight"].T + w["output.bias"]
-    wanted = data.torque.mean(0) + data.torque.std(0) * y
-    np.testing.assert_allclose(rival.torque(data.x), wanted, atol=1e-4)
-    assert rival.count() == sum(x.size for x in w.values()) + 8 + 4
-    products = 11 * (4 * 12 + 4 * 12) + 8
-    assert rival.operations().multiplications == products + 11 * 3 * 4
-    assert rival.operations().functions == 11 * 3 * 4
-
-
-def test_what_makes_no_sense_is_refused():
-    with pytest.raises(ValueError, match="windows must have 9 samples or more, got 7"):
-        Convolution(2).fit(windows(20, 7))
-    still = windows(20)
-    still.x[:, 1] = 0.3
-    with pytest.raises(ValueError, match="x and torque must vary in each joint"):
-        Recurrent(2).fit(still)

@@ -7,7 +7,7 @@ import pytest
 
 from beyond.chapters.stirring import needed
 from beyond.studies.loop import motions, stirring
-from ddlib.dynamics import CMU_DD_ARM_II as ARM, Unreachable
+from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.setups import JOINT_DAMPING
 from ddlib.trajectories import MOTION_SECONDS
 
@@ -49,14 +49,6 @@ class TestCircles:
         assert not reference.qd[:, ~INSIDE].any() and not reference.qdd[:, ~INSIDE].any()
         jump = np.abs(np.diff(reference.qd, axis=1)).max()
         assert jump < 0.05 if start == "smooth" else jump > 0.2
-
-    def test_circles_out_of_reach_are_refused(self):
-        one = np.ones(1)
-        far = motions.Circles(0.1 * one, one, 0.85 * one, one, np.array([False]))
-        with pytest.raises(Unreachable, match="hand must be"):
-            motions.stirred(ARM, far, T)
-        with pytest.raises(ValueError, match="radius"):
-            motions.Circles(-one, one, one, one, np.array([True]))
 
 
 class TestViaPoints:

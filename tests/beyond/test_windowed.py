@@ -5,13 +5,11 @@ import pytest
 
 from beyond.control.windowed import (
     MeasuredWindows,
-    PlannedTorque,
     WindowFeedforward,
     poles_inside,
 )
 from ddlib.control import late_poles, pd, plant
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
-from ddlib.simulation import record
 from ddlib.trajectories import Trajectory
 
 T = np.arange(0, 400) * 0.002
@@ -49,23 +47,6 @@ def test_every_control_sample_has_its_own_window_or_it_holds_or_draws_a_line():
 FEEDBACK = pd((300.0, 90.0), (35.0, 10.0))
 
 
-def weight(windows):
-    """Some torque that depends on all of a window."""
-    return 20 * windows[..., 0] - 30 * windows[..., 2] + 5 * windows[..., 4]
-
-
-@pytest.mark.parametrize("law", [PlannedTorque, MeasuredWindows])
-def test_a_loop_that_cannot_make_the_windows_is_refused(law):
-    right, wrong = (WindowFeedforward(weight, 5, every, step=0.01) for every in (5, 4))
-    with pytest.raises(ValueError, match=r"0.002 s are 0.008 s.* 0.01 s apart"):
-        record(ARM, law(wrong, FEEDBACK), (40, 30))
-    with pytest.raises(ValueError, match=r"0.001 s are 0.005 s"):
-        record(ARM, law(right, FEEDBACK), (40, 30), control_step=0.001)
-    record(ARM, law(right, FEEDBACK), (40, 30), duration=0.1, rest=0.1)
-    unknown = WindowFeedforward(weight, 5, 4)
-    record(ARM, law(unknown, FEEDBACK), (40, 30), duration=0.1, rest=0.1)
-
-
 @pytest.mark.parametrize("tap, late", [(0, 10), (1, 5), (2, 0), (3, -5), (4, -10)])
 def test_what_has_been_is_measured_and_what_is_to_come_desired(tap, late):
     """A model that passes on one sample of its window."""
@@ -100,16 +81,3 @@ def test_poles_with_a_model_inside_are_those_of_other_gains_or_of_a_late_loop(
     inside = np.abs(poles_inside(JOINTS, feedback, past, 0.002, late=late)).max()
     wanted = np.abs(late_poles(JOINTS, gain, 0.002, delay)).max()
     assert inside == pytest.approx(wanted, abs=1e-12)
-
-
-@pytest.mark.parametrize(
-    "make, name",
-    [
-        (lambda: WindowFeedforward(middle, 4), "width"),
-        (lambda: WindowFeedforward(middle, 5, between="x"), "between"),
-        (lambda: WindowFeedforward(lambda w: w[:, 0], 5)(Q, Q, Q), "model"),
-    ],
-)
-def test_what_makes_no_sense_is_refused(make, name):
-    with pytest.raises(ValueError, match=name):
-        make()

@@ -8,7 +8,6 @@ from book_pages import CHAPTERS, EVIDENCE, EVIDENCE_OF, PAGES, ROOT
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import dd_contents
-import dd_moved
 
 
 def test_evidence_is_passed_by_and_leads_back():
@@ -16,24 +15,6 @@ def test_evidence_is_passed_by_and_leads_back():
     found = [dd_contents.neighbours(pages, page) for page in pages]
     assert found[0] == (None, "book/a") and found[1] == ("book/index", "book/c")
     assert found[2] == found[3] == ("book/a", "book/c") and found[4] == ("book/a", None)
-
-
-def test_old_names_lead_to_pages_that_there_are():
-    found = dd_moved.pages({"book/evidence/start", "book/whose-filters", "book/dynamics"})
-    assert found["book/evidence-start"] == "book/evidence/start"
-    assert set(found.values()) == {"book/evidence/start", "book/whose-filters"}
-    merged = dd_moved.pages({"book/real-arm", "book/evidence/real-two-link-arm"})
-    assert merged["book/real-two-link-arm"] == "book/real-arm"
-
-
-def test_sections_are_found_where_they_stand_now():
-    old = dd_moved.yaml.safe_load(dd_moved.OLD.read_text(encoding="utf-8"))
-    name, anchors = next(iter(old.items()))
-    ids = {name: {*anchors[:1]}, f"evidence/{name}": {*anchors[1:2]}, "c": {*anchors}}
-    ids = {f"book/{page}": own for page, own in ids.items()}
-    moved = dd_moved.sections(ids, [*ids])
-    assert moved[f"book/{name}"][f"book/evidence/{name}"] == anchors[1:2]
-    assert moved[f"book/{name}"]["book/c"] == sorted(anchors[2:])
 
 
 @pytest.mark.built

@@ -6,15 +6,14 @@ import sys
 import chromium
 import pytest
 import yaml
-from book_pages import CHAPTERS, PAGES, ROOT, source
+from book_pages import CHAPTERS, PAGES, ROOT
 from docutils import nodes
 from docutils.utils import new_document
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import dd_cite
 import dd_exercises
-import dd_lessons
-import dd_quiz
+import lessons
 
 
 def asked(strong: str, *rest) -> nodes.paragraph:
@@ -23,9 +22,9 @@ def asked(strong: str, *rest) -> nodes.paragraph:
 
 def test_a_paragraph_becomes_a_heading_and_its_folds_are_named():
     """The question keeps its words; what belongs to no exercise stays as it is."""
-    fold = f'<details class="answer">\n{dd_exercises.SOLUTION}\n'
+    fold = f'<details class="answer">\n{lessons.SOLUTION}\n'
     check = nodes.container(prompt_show="The check", prompt_hide="The check")
-    own = nodes.section("", nodes.title("", dd_quiz.ON_YOUR_OWN), nodes.paragraph("", "Before."))
+    own = nodes.section("", nodes.title("", lessons.ON_YOUR_OWN), nodes.paragraph("", "Before."))
     own += [asked("1. Late", " (a design). Let it."), check, nodes.raw("", fold, format="html")]
     own += [asked("2. Twice", " (an experiment). "), nodes.raw("", fold, format="html")]
     other = nodes.section("", nodes.title("", "Elsewhere"), asked("1. Late", " (a design)."))
@@ -67,10 +66,9 @@ def test_the_citation_is_that_of_the_repository():
 @pytest.mark.built
 def test_exercises_are_headings_of_their_pages(parsed):
     for name in CHAPTERS:
-        page = parsed(name)
-        found = dd_lessons.exercises(source(name))
-        heads = page.select('#on-your-own > h3[id^="exercise-"]')
-        assert [head["id"] for head in heads] == [f"exercise-{each.number}" for each in found]
+        heads = parsed(name).select('#on-your-own > h3[id^="exercise-"]')
+        exercises = lessons.lesson(ROOT, name).exercises
+        assert [head["id"] for head in heads] == [f"exercise-{each.number}" for each in exercises]
 
 
 @pytest.mark.built

@@ -1,46 +1,105 @@
-"""Lessons: exercises of each kind, and a place for every widget."""
+"""Lessons: what the build knows of one, and what pages and readers' notebooks make of that."""
 
-import json
 import re
 import sys
 from collections import defaultdict
 
+import nbformat
+import pytest
 from book_pages import ROOT
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import dd_lessons
+import dd_quiz
+import lessons
+
+EVERY = lessons.lessons(ROOT)
+WITH_OBJECTIVES = [each for each in EVERY if each.objectives]
+SOLVED = "\n" + lessons.SOLUTION
+BARE, FULL = (
+    "# Bare\n\nNothing else.\n",
+    """# Full\n\nWords.\n\n## On your own
+
+**1. Weigh it** (a derivation). How heavy?\n
+**2. Turn it** (a design). How far?\n\n## Further reading\n\n**3. No exercise.**
+""",
+)
 
 
-def name(path):
-    return path.relative_to(ROOT / "book").with_suffix("").as_posix()
+@pytest.fixture
+def two(tmp_path):
+    """A book of two lessons, of which one has everything, and the other a notebook alone."""
+    (tmp_path / "book").mkdir()
+    files = "".join(f"  - file: book/{name}\n" for name in ("bare", "full"))
+    contents = (
+        f"format: jb-book\nroot: book/index\nparts:\n- caption: The walk\n  chapters:\n{files}"
+    )
+    (tmp_path / "_toc.yml").write_text(contents)
+    for name, text in {"bare": BARE, "full": FULL}.items():
+        notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_markdown_cell(text)])
+        nbformat.write(notebook, tmp_path / "book" / f"{name}.ipynb")
+    answers = "[{text: ten, why: w, right: true}, {text: two, why: w}]"
+    quiz = f"full:\n- question: How many?\n  answers: {answers}\n"
+    (tmp_path / "book" / "quizzes.yml").write_text(quiz)
+    objectives = "full:\n- can: count it\n  by: [exercise 2, question 1]\n"
+    (tmp_path / "book" / "objectives.yml").write_text(objectives)
+    return tmp_path
 
 
-def test_chapters_ask_for_a_derivation_a_design_and_a_prediction():
-    asked = {name(path): dd_lessons.exercises(path) for path in dd_lessons.chapters(ROOT)}
-    asked = {page: exercises for page, exercises in asked.items() if exercises}
-    assert len(asked) >= 20
-    wrong = {}
-    for page, exercises in asked.items():
-        kinds = {each.kind for each in exercises}
-        in_order = [each.number for each in exercises] == list(range(1, 1 + len(exercises)))
-        if not in_order or not {"derivation", "design", "prediction"} <= kinds:
-            wrong[page] = exercises
-        elif not kinds <= set(dd_lessons.KINDS):
-            wrong[page] = kinds
-    assert not wrong
+def test_a_lesson_needs_a_notebook_and_a_line_in_the_contents(two):
+    bare, full = lessons.walk(two)
+    assert lessons.chapters(two) == [bare.path, full.path] and bare.headings == ["Bare"]
+    assert not (bare.exercises or bare.questions or bare.objectives)
+    assert dd_quiz.with_sections("## On your own\n", bare) == "## On your own\n"
+    assert lessons.lesson(two, "book/none") is None
 
 
-def test_what_the_walk_needs_is_said_alike():
-    """The landing page names whatever a lesson asks for that no other lesson teaches."""
-    told = (ROOT / "book" / "index.ipynb").read_text(encoding="utf-8")
-    need = re.compile(r"\*\*You need\*\* (.+?)(?::|\.$|\. |\n)", re.MULTILINE)
-    asked = {}
-    for page in ("dynamics", "feedback", "backpropagation"):
-        text = "\n".join(dd_lessons.prose(ROOT / "book" / f"{page}.ipynb"))
-        pieces = re.split(r",(?: and)? ", need.search(text)[1])
-        asked[page] = [each for each in pieces if "{doc}" not in each]
-    assert all(asked.values())
-    assert not [(page, each) for page, all_ in asked.items() for each in all_ if each not in told]
+def test_what_stands_beside_a_lesson_is_found_by_its_name(two):
+    full = lessons.lesson(two, "book/full")
+    assert full.exercises == [
+        lessons.Exercise(1, "Weigh it", "derivation", 15),
+        lessons.Exercise(2, "Turn it", "design", 20),
+    ]
+    (question,) = full.questions
+    right = [answer["verdict"] for answer in question["answers"] if answer.get("right")]
+    assert right[0] in ("A is right.", "B is right.")
+    assert [full.anchor(test) for test in full.objectives[0].by] == [
+        "exercise-2",
+        f"quiz-{question['key']}",
+    ]
+    text = dd_quiz.with_sections("Before.\n\n## On your own\n\nAfter.", full)
+    assert text.startswith(
+        "Before.\n\n## What you can do now\n\nAfter this lesson you can\n\n- count"
+    )
+    assert "(exercise 2, question 1)\n\n## Check yourself\n\n**1.** How many?" in text
+    assert text.count("<details>") == 1 and text.endswith("</details>\n\n## On your own\n\nAfter.")
+
+
+def test_minutes_come_from_what_an_exercise_asks():
+    """By hand: 5 to think of a prediction, 2 a line of code, 1 an equation, 120 words a minute."""
+    minutes = lessons.minutes
+    assert minutes("prediction", SOLVED) == 10 and minutes("design", "") == 15
+    assert minutes("design", f"{SOLVED}\n```python\na = 1\nmine = a\n```\n") == 20
+    assert minutes("derivation", f"{SOLVED}$a = b$ and $b \\le c$ of $d$.") == 15
+    assert minutes("derivation", f"{SOLVED}{'$a = b$ ' * 6}") == 20
+    assert minutes("prediction", f"{SOLVED}{'word ' * 1200}") == 20
+    assert "10 about a derivation or an experiment" in dd_lessons.rule()
+
+
+def test_exercises_are_numbered_in_order():
+    numbers = {each.name: [exercise.number for exercise in each.exercises] for each in EVERY}
+    assert sum(map(bool, numbers.values())) >= 20
+    assert not {name: n for name, n in numbers.items() if n != list(range(1, 1 + len(n)))}
+
+
+@pytest.mark.parametrize("of", WITH_OBJECTIVES, ids=lambda of: of.name)
+def test_each_objective_is_tested_and_each_test_has_its_objective(of):
+    """And most of them by something that is computed, derived or designed."""
+    tests = {f"exercise {each.number}" for each in of.exercises}
+    tests |= {f"question {k}" for k in range(1, 1 + len(of.questions))}
+    assert {test for each in of.objectives for test in each.by} == tests
+    done = [each for each in of.objectives if any("exercise" in test for test in each.by)]
+    assert len(done) > len(of.objectives) / 2
 
 
 def test_every_widget_has_its_place_in_the_lessons():
@@ -49,15 +108,41 @@ def test_every_widget_has_its_place_in_the_lessons():
     classes = set(re.findall(r"^class (\w+)\([\w.]*Widget\)", code, re.MULTILINE))
     made = re.compile(rf"\b({'|'.join(name for name in classes if name[-6:] != 'Widget')})\(")
     page = (ROOT / "book" / "lessons.md").read_text(encoding="utf-8")
-    asked, found = set(re.findall(r"{section}`([^`]+)`", page)), defaultdict(set)
-    for path in dd_lessons.chapters(ROOT):
-        place = None
-        for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
-            text = "".join(cell["source"])
-            if cell["cell_type"] == "markdown":
-                place = (re.findall(r"^#+ (.+)$", text, re.MULTILINE) or [place])[-1]
+    listed, places = set(re.findall(r"{section}`([^`]+)`", page)), defaultdict(set)
+    for of in EVERY:
+        heading = None
+        for cell in of.notebook.cells:
+            if cell.cell_type == "markdown":
+                heading = (re.findall(r"^#+ (.+)$", cell.source, re.MULTILINE) or [heading])[-1]
             else:
-                for kind in made.findall(text):
-                    found[kind].add(f"{name(path)}: {place}")
-    assert len(found) >= 10
-    assert not {name: places for name, places in found.items() if not places & asked}
+                for kind in made.findall(cell.source):
+                    places[kind].add(f"{of.name}: {heading}")
+    assert len(places) >= 10
+    assert not {kind: where for kind, where in places.items() if not where & listed}
+
+
+@pytest.mark.built
+def test_pages_have_their_sections_and_links_that_lead_somewhere(parsed):
+    """Objectives before questions before exercises; the search does not find wrong answers."""
+    for of in EVERY:
+        page = parsed(of.page)
+        sections = [section["id"] for section in page.select("article section[id]")]
+        wanted = ["what-you-can-do-now"] * bool(of.objectives)
+        wanted += ["check-yourself"] * bool(of.questions)
+        if wanted:
+            at = sections.index("on-your-own")
+            assert sections[at - len(wanted) : at] == wanted, of.name
+        assert len(page.select("#check-yourself form fieldset > legend")) == len(of.questions)
+        folds = page.select("#check-yourself details.answer:not([open]) .why.right")
+        assert len(folds) == len(of.questions)
+        items = page.select("#what-you-can-do-now li")
+        assert len(items) == len(of.objectives)
+        for item, objective in zip(items, of.objectives):
+            links = item.select("a[href]")
+            assert [link.get_text() for link in links] == objective.by
+            assert all(page.find(id=link["href"].lstrip("#")) for link in links), objective
+    listed = parsed("book/lessons").select("#what-each-lesson-teaches li a[href]")
+    assert len(listed) == sum(len(each.by) for of in EVERY for each in of.objectives)
+    for link in listed:
+        page, _, target = link["href"].partition(".html#")
+        assert parsed(f"book/{page}").find(id=target), link

@@ -1,16 +1,18 @@
-"""Prose says what was computed: numbers are quoted, words of direction are bound to a check."""
+"""Prose says what was computed: numbers are quoted, words of three pages are bound to a check."""
 
 from __future__ import annotations
 
-import ast
+import re
 from functools import cache
-from importlib import import_module
 
-import nbformat
+import numpy as np
 import prose
 import pytest
 import yaml
-from book_pages import API, EVIDENCE, EVIDENCE_OF, PAGES, ROOT, WALK, module_of, source
+from book_pages import API, PAGES, ROOT, code_cells, module_of, source
+
+from beyond.chapters import verdict
+from workshop.chapters import index
 
 SUPPORT = ROOT / "tests" / "support"
 ALLOWED = yaml.safe_load((SUPPORT / "allowed_numbers.yml").read_text(encoding="utf-8"))
@@ -72,61 +74,21 @@ def test_typed_results_are_told_from_names_and_settings():
         assert prose.typed_numbers(prose.sentence(planted)) == numbers, planted
 
 
-ALONE = [page for page in EVIDENCE if module_of(page) not in [*filter(None, map(module_of, WALK))]]
-"""Evidence pages with a module of their own, or with none."""
+def checks(name: str) -> set[str]:
+    """Names of the `stated` calls of a page's notebook and module."""
+    page = NAMES[name]
+    code = [*code_cells(source(page)), module_of(page).read_text(encoding="utf-8")]
+    return set(re.findall(r'\bstated\(\s*"([\w-]+)"', "\n".join(code)))
 
 
-def checks(page: str) -> list[str]:
-    """Names of the `stated` calls of a notebook, or of a lesson's module, which a test runs.
-
-    A constant that checks nothing is left out.
-    """
-    cells = nbformat.read(source(page), as_version=4).cells
-    code = [cell.source for cell in cells if cell.cell_type == "code"]
-    if page in (*WALK, "book/index", *ALONE):
-        path = module_of(page)
-        code += [path.read_text(encoding="utf-8")] if path else []
-    trees = [ast.parse(text) for text in code]
-    calls = [
-        node.args
-        for tree in trees
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "stated"
-    ]
-    return [
-        name.value
-        for name, holds, *_ in calls
-        if isinstance(name, ast.Constant) and not isinstance(holds, ast.Constant)
-    ]
-
-
-def test_bound_sentences_stand_in_their_page_and_their_checks_too():
+@pytest.mark.parametrize("name", BOUND)
+def test_bound_sentences_stand_in_their_page_and_their_checks_too(name):
     """A piece that was reworded, a check that was renamed, a check behind no sentence."""
-    wrong, bound = [], {}
-    known_of = {n: checks(p) if source(p).suffix == ".ipynb" else [] for n, p in NAMES.items()}
-    for name in NAMES:
-        known, used = known_of[name], bound.setdefault(name, set())
-        assert len(known) == len(set(known)), f"{name}: two checks of one name"
-        for entry in BOUND.get(name, []):
-            used |= {entry["by"]} if isinstance(entry["by"], str) else set(entry["by"])
-            piece = prose.sentence(entry["text"]).bare
-            if not any(piece in one.bare for one in read(name)):
-                wrong.append((name, "no such sentence", entry["text"]))
-    for name, known in known_of.items():  # an evidence page may call checks of its lesson's module
-        lessons = [own for own, below in EVIDENCE_OF.items() if NAMES[name] in below]
-        there = {*known, *(check for own in lessons for check in known_of[own[5:]])}
-        used = bound[name].union(*(bound[below[5:]] for below in EVIDENCE_OF.get(NAMES[name], ())))
-        wrong += [(name, "no such check", by) for by in bound[name] - there]
-        wrong += [(name, "behind no sentence", check) for check in set(known) - used]
-    assert not wrong
-    assert set(BOUND) <= set(NAMES) and sum(map(len, BOUND.values())) > 200
+    pieces = [prose.sentence(entry["text"]).bare for entry in BOUND[name]]
+    assert not [piece for piece in pieces if not any(piece in one.bare for one in read(name))]
+    assert {by for entry in BOUND[name] for by in np.atleast_1d(entry["by"])} == checks(name)
 
 
-@pytest.mark.parametrize("page", [*WALK, *ALONE])
-def test_what_a_page_states_is_so(page):
-    """By the `_said` of the page's module, if the page binds words at all."""
-    path = module_of(page)
-    if page.removeprefix("book/") in BOUND and path:
-        module = import_module(".".join(path.relative_to(ROOT / "book").with_suffix("").parts))
-        assert page not in WALK or hasattr(module, "_said"), path
-        getattr(module, "_said", lambda: None)()
+def test_what_the_verdict_and_the_landing_page_say_in_words_is_so():
+    verdict._said()
+    index._quoted()

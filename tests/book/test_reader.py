@@ -66,7 +66,8 @@ def test_cells_are_open_folded_or_a_folded_solution():
     cells = [new.new_code_cell(name, metadata={"tags": tags}) for name, tags in code.items()]
     cells[-1].metadata["mystnb"] = {"figure": {"name": "fig", "caption": "{term}`Curves`.\n"}}
     source = new.new_notebook(cells=[new.new_markdown_cell("# Title"), *cells])
-    made = reader_notebook(source, "page", Known(), {})
+    of = SimpleNamespace(notebook=source, page="page")
+    made = reader_notebook(of, Known(), {})
     title, note, setup, opened, folded, solved, drawn, caption = made.cells
     assert title.source == "# Title" and "Your copy" in note.source and "the-book" in setup.source
     assert opened.source == "open" and not opened.metadata

@@ -14,6 +14,7 @@ from workshop.report import results
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import dd_runtime
+import lessons
 
 PAIR = {
     "group": "Training",
@@ -74,12 +75,12 @@ def test_pages_tell_the_time_to_read_them(parsed):
     told = []
     for name in CHAPTERS:
         text = parsed(name).article.get_text()
-        told.append((re.search(r"Time to read\s+(\d+) minutes, counted", text)[1], [source(name)]))
+        told.append((re.search(r"Time to read\s+(\d+) minutes, counted", text)[1], [name]))
     for way in parsed("book/index").select("#the-walk > .tag_station + p"):
         pages = [Path(a["href"]).stem for a in way.select("a[href]")]
         minutes = re.search(r"(\d+) minutes", way.get_text())[1]
-        told.append((minutes, [ROOT / "book" / f"{name}.ipynb" for name in pages]))
+        told.append((minutes, [f"book/{name}" for name in pages]))
     assert len(told) == len(CHAPTERS) + 10
-    for minutes, paths in told:
-        count = sum(map(dd_runtime.words, paths)) / dd_runtime.WORDS_A_MINUTE
-        assert abs(int(minutes) - count) <= 5, paths
+    for minutes, pages in told:
+        words = sum(lessons.lesson(ROOT, page).words for page in pages)
+        assert abs(int(minutes) - words / lessons.WORDS_A_MINUTE) <= 5, pages

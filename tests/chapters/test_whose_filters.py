@@ -110,15 +110,6 @@ def test_answers_are_judged(number, right, wrong, capsys):
         assert capsys.readouterr().out.startswith(begins)
 
 
-def test_inertia_at_a_frequency():
-    second_difference = np.zeros(21)
-    second_difference[9:12] = 2 * np.array([1, -2, 1]) / LOG_STEP**2  # of 2 kg m²
-    assert np.isclose(inertia_in_the_weights.inertia_at(second_difference, 0.2), 2, rtol=1e-4)
-    at = inertia_in_the_weights.inertia_at(second_difference, 10)
-    omega = 20 * np.pi
-    assert np.isclose(at, 4 * (1 - np.cos(omega * LOG_STEP)) / (omega * LOG_STEP) ** 2)
-
-
 def test_paths_add_up_to_the_network():
     model = results.median_network(21, JOINT_DAMPING.name)
     windows, _ = cases(committed.training(JOINT_DAMPING.name), 21)

@@ -128,8 +128,6 @@ def test_each_row_has_a_scale_of_its_own():
         small = relative_weights(half, scale, weights)
         assert small.largest == pytest.approx(0.5)
         assert relative_weights(weights, scale, half).largest == 1
-    with pytest.raises(ValueError, match="scale must be one of"):
-        hinton(weights, scale="unit")
 
 
 @pytest.mark.parametrize("unit, joint", [(1, 0), (2, 1), (5, 0)])
@@ -152,14 +150,7 @@ def test_a_row_gets_a_frame(unit, joint):
     np.testing.assert_allclose(found, np.sort(rows[unit, joint]) / rest.largest)
 
 
-def test_refusals():
-    for diagram, weights, message in (
-        (hinton, Weights.random(3, 11), "weights must be of one network"),
-        (hinton, planted(11), "weights must be finite and not all zero"),
-        (hinton, planted(11, np.nan), "weights must be finite and not all zero"),
-        (hinton_states, Weights.random(2, 3), "weights must be of one network"),
-        (hinton_states, Weights.random(1, 5)[0], "weights must be of one network"),
-        (hinton_states, planted(3, np.nan), "weights must be finite"),
-    ):
-        with pytest.raises(ValueError, match=message):
-            diagram(weights)
+@diagrams
+def test_an_ensemble_is_no_network(diagram, width):
+    with pytest.raises(ValueError, match="weights must be of one network"):
+        diagram(Weights.random(3, width))

@@ -6,6 +6,7 @@ import tomllib
 from functools import cache
 from importlib.metadata import packages_distributions
 
+import pytest
 from book_pages import ROOT, code_cells
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
@@ -34,11 +35,8 @@ def named(lines) -> dict[str, Requirement]:
 
 OWN = named(PYPROJECT["project"]["dependencies"])
 EXTRAS = {k: named(v) for k, v in PYPROJECT["project"]["optional-dependencies"].items()}
-PINS = named(
-    line
-    for text in (ROOT / "requirements.txt").read_text(encoding="utf-8").splitlines()
-    if (line := text.partition("#")[0].strip())
-)
+GROUPS = PYPROJECT["dependency-groups"]
+PINS = named(line for name in ("reader", "build", "tools") for line in GROUPS[name])
 
 
 def notebooks() -> list[str]:
@@ -70,18 +68,35 @@ def test_the_package_declares_what_it_imports():
 def test_the_environment_declares_what_is_imported():
     sources = {**{folder: texts.values() for folder, texts in TEXTS.items()}, "book": notebooks()}
     for folder, texts in sources.items():
-        declared = PINS.keys() | (EXTRAS["bench"].keys() if folder == "benchmarks" else set())
-        assert distributions(texts) <= declared, f"{folder}: missing in requirements.txt"
+        declared = PINS.keys() | EXTRAS["learning"].keys()
+        declared |= EXTRAS["bench"].keys() if folder == "benchmarks" else set()
+        assert distributions(texts) <= declared, f"{folder}: missing in pyproject.toml"
 
 
 def test_the_pins_lie_in_the_packages_ranges():
-    for name, wanted in {**OWN, **EXTRAS["dask"], **EXTRAS["learning"]}.items():
-        given = PINS[name]
-        if name == "torch":  # a range in both, on purpose
-            assert given.specifier == wanted.specifier
-        else:
-            (version,) = given.specifier
-            assert version.operator == "==" and version.version in wanted.specifier, name
+    for name, wanted in {**OWN, **EXTRAS["dask"]}.items():
+        (version,) = PINS[name].specifier
+        assert version.operator == "==" and version.version in wanted.specifier, name
+
+
+@pytest.mark.parametrize(
+    "file, groups",
+    [
+        ("requirements.txt", ("reader", "build")),
+        ("requirements-test.txt", ("reader", "build", "tools")),
+    ],
+)
+def test_what_make_installs_is_what_pyproject_pins_with_hashes(file, groups):
+    blocks = re.split(r"\n(?=\w)", (ROOT / file).read_text(encoding="utf-8").strip())[1:]
+    locked = {Requirement(block.partition("\\")[0]).name: block for block in blocks}
+    for name, pin in named(line for group in groups for line in GROUPS[group]).items():
+        assert Requirement(locked[name].partition("\\")[0]).specifier == pin.specifier, name
+    assert all("--hash=sha256:" in block for block in blocks)
+
+
+def test_make_takes_the_pytorch_that_the_package_allows():
+    (allowed,) = PYPROJECT["project"]["optional-dependencies"]["learning"]
+    assert f'LIMITS := "{allowed}"' in (ROOT / "Makefile").read_text(encoding="utf-8")
 
 
 def test_actions_are_pinned_to_a_commit_and_say_which_version():

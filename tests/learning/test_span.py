@@ -15,7 +15,6 @@ from ddlib.learning import (
     WindowNetwork,
     effective_steps,
     jacobian,
-    with_change,
     with_ones,
 )
 
@@ -159,14 +158,3 @@ def test_prediction_is_descent_of_the_linearised_network(data):
     second = (after.output_weights - weights.output_weights).ravel()
     np.testing.assert_allclose(second, last[size:], atol=1e-10)
     assert abs(last[size:]).max() > 1e-3
-
-
-def test_refusals(data):
-    for call, words in (
-        (lambda: effective_steps([-1.0], [1]), "rates must not be negative"),
-        (lambda: effective_steps([1.0], [2, 1]), "epochs must not decrease"),
-        (lambda: with_change(start(), np.zeros((3, 97))), r"change must have shape \(\.\.\., 98\)"),
-        (lambda: Lazy(Weights.random(2, WIDTH), data), "weights must be of one network"),
-    ):
-        with pytest.raises(ValueError, match=words):
-            call()

@@ -1,4 +1,4 @@
-"""What a piece of code says that is not for a reader: lines that keep books, and raw prints."""
+"""What a piece of code has that is not for a reader: lines that keep books, and bare values."""
 
 from __future__ import annotations
 
@@ -99,25 +99,3 @@ def ends_with_a_bare_value(code: str) -> bool:
         names = {ast.unparse(node.targets[0]): ast.unparse(node.value) for node in made}
         return not re.match(r"(\w+\.)?[A-Z]\w+\(", names.get(last.value.id, ""))
     return isinstance(last.value, BARE) or bool(re.fullmatch(OF_ARRAYS, called(last)))
-
-
-def raw_prints(code: str) -> list[str]:
-    """Calls of `print` that show values without a sentence around them."""
-
-    def speaks(node: ast.expr) -> bool:
-        if isinstance(node, ast.Constant):
-            return isinstance(node.value, str)
-        if isinstance(node, ast.JoinedStr):
-            return any(
-                isinstance(n, ast.Constant) and re.search("[a-z]", n.value) for n in node.values
-            )
-        if isinstance(node, ast.BinOp):
-            return speaks(node.left) or speaks(node.right)
-        # texts made elsewhere: a listing, a message, several sentences
-        return (
-            re.fullmatch(r"error|.*\.(source|text|join\(.*\))", ast.unparse(node), re.S) is not None
-        )
-
-    calls = (node for node in ast.walk(ast.parse(code)) if isinstance(node, ast.Call))
-    prints = (node for node in calls if ast.unparse(node.func) == "print")
-    return [ast.unparse(node) for node in prints if not all(map(speaks, node.args))]

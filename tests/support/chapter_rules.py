@@ -10,7 +10,6 @@ from bookkeeping import (
     ends_with_a_bare_value,
     lines_of_bookkeeping,
     only_imports,
-    raw_prints,
     shows_something,
 )
 from needed import needed
@@ -104,10 +103,8 @@ def what_is_removed_shows_nothing(notebook) -> list:
     return [cell.id for cell in removed if shows_something(cell.source)]
 
 
-def outputs_are_sentences_or_tables(notebook) -> list:
-    code = code_of(notebook)
-    wrong = [found for cell in code for found in raw_prints(cell.source)]
-    return wrong + [cell.id for cell in code if ends_with_a_bare_value(cell.source)]
+def outputs_are_no_bare_values(notebook) -> list:
+    return [cell.id for cell in code_of(notebook) if ends_with_a_bare_value(cell.source)]
 
 
 EVERYWHERE = (
@@ -117,7 +114,7 @@ EVERYWHERE = (
     visible_code_teaches,
     folds_open_onto_something,
     what_is_removed_shows_nothing,
-    outputs_are_sentences_or_tables,
+    outputs_are_no_bare_values,
 )
 
 

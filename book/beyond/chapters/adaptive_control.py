@@ -26,7 +26,6 @@ from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.tables import Table, quote, significant
 from workshop.chapters.exercises import Exercise, judging
 from workshop.report import results
-from workshop.report.evidence.statements import stated
 from workshop.report.evidence.verdicts import Measured, judged
 
 _PLAIN = FuncFormatter(lambda value, place: f"{value:g}")
@@ -95,12 +94,12 @@ def _stops_map(x, y, panels: dict[str, tuple], labels: tuple[str, ...], alt: str
     return illustrate(draw, alt, 7.0, 2.9)
 
 
-def kept(*path) -> np.ndarray | dict:
+def part(*path) -> np.ndarray | dict:
     """A part of the result; among its numbers, runs that were stopped are infinite."""
-    part = results.read("adaptive")
+    branch = results.read("adaptive")
     for key in path:
-        part = part[key]
-    return part if isinstance(part, dict) else _finite(part)
+        branch = branch[key]
+    return branch if isinstance(branch, dict) else _finite(branch)
 
 
 def _finite(numbers) -> np.ndarray:
@@ -109,14 +108,14 @@ def _finite(numbers) -> np.ndarray:
 
 def load_row(setup: str, mass: float, late: int = 0) -> dict[str, np.ndarray]:
     """Errors in mm by law, ``(motions, seeds)``, with a load in kg and torques periods late."""
-    rows = kept("loads", setup)["rows"]
+    rows = part("loads", setup)["rows"]
     (row,) = [r for r in rows if r["load"] == mass and r["late"] == late]
     return {name: _finite(errors) for name, errors in row["settled"].items()}
 
 
 def _added(effect: str) -> np.ndarray:
     """What an effect adds to the estimates of each day, as shares of the true ones."""
-    own, none = (np.array(kept("bed", e, "estimate")) for e in (effect, next(iter(kept("bed")))))
+    own, none = (np.array(part("bed", e, "estimate")) for e in (effect, next(iter(part("bed")))))
     return own - none
 
 
@@ -125,7 +124,7 @@ def bias(effect: str) -> np.ndarray:
     return np.median(_added(effect), axis=0)
 
 
-def _told(parameter: str) -> str:
+def _in_words(parameter: str) -> str:
     """A parameter of adaptive controllers in words, if it is a friction or a moment."""
     kinds = {"F_v": "viscous friction", "F_c": "Coulomb friction", "g": "gravity moment"}
     kind, joint = kinds.get(parameter[:-1]), parameter[-1]
@@ -139,7 +138,7 @@ def bent(effect: str) -> Measured:
     return judged(
         lambda x: np.abs(np.median(x, axis=1)).max(-1),
         _added(effect),
-        text=f"{100 * off[k]:+.0f} % of {_told(WITH_FRICTION[k])}",
+        text=f"{100 * off[k]:+.0f} % of {_in_words(WITH_FRICTION[k])}",
     )
 
 
@@ -151,7 +150,7 @@ _SETUPS = {"jd": JOINT_DAMPING.name, "sf": STATE_FEEDBACK.name}
 
 def _again(seconds: str, setup: str, law: str) -> np.ndarray:
     """End-point errors (mm), (motions, runs), along a plan with corners of so many seconds."""
-    return _finite(kept("same motions", seconds, setup)["hand"][law])
+    return _finite(part("same motions", seconds, setup)["hand"][law])
 
 
 def _quoted() -> None:
@@ -168,35 +167,16 @@ def _quoted() -> None:
             quote(f"fair-{key}-{when}", errors[name][k])
         quote(f"fair-{key}-margin", 1e3 * fair_rivals.delay_margin(fair_rivals.RIVALS[name]))
         quote(f"fair-{key}-encoder", coarse[name][3])
-    excited = {n: np.array(x, float) for n, x in kept("excitation", "settled").items()}
-    quote("adaptive-five-a", 100 * abs(kept("excitation", "estimate")[4][0] - 1))
+    excited = {n: np.array(x, float) for n, x in part("excitation", "settled").items()}
+    quote("adaptive-five-a", 100 * abs(part("excitation", "estimate")[4][0] - 1))
     quote("adaptive-five-old", excited["not learning"][-1, 4])
     quote("adaptive-five-new", excited["learning"][-1, 4])
-    difference = kept("sensors", "difference")["Slotine & Li"]["settled"]
-    coarse = list(kept("bits")).index(12.5)
+    difference = part("sensors", "difference")["Slotine & Li"]["settled"]
+    coarse = list(part("bits")).index(12.5)
     quote("adaptive-difference", float(np.median(_finite(difference)[coarse])))
     for effect in ("dead zone", "backlash"):
-        row = {n: np.median(_finite(x)) for n, x in kept("bed", effect, "settled").items()}
+        row = {n: np.median(_finite(x)) for n, x in part("bed", effect, "settled").items()}
         quote(f"adaptive-bed-{effect.replace(' ', '-')}", row["adapted"] / row["held"])
-
-
-def _said() -> None:
-    """What stands behind words of the prose."""
-    few, heavy, slow = (
-        [np.median(_again(seconds, s, "with friction") / _again(seconds, s, "PD"), -1)[at]
-         for s in _SETUPS.values()]
-        for seconds, at in (("0.1", 3), ("0.1", 7), ("0.2", 7))
-    )  # fmt: skip
-    stated("adaptive-few", max(*few, *slow) < 0.06)
-    stated("adaptive-heavy", min(heavy) > 2 * max(slow))
-    errors = _fair()
-    held, watched, learnt = (errors[n] for n in list(_FAIR)[3:6])
-    stated("adaptive-held-empty", held[3] < 0.6 * learnt[3])
-    stated("adaptive-wrong-empty", errors["all of them 10 % too large"][3] > 1.5 * learnt[3])
-    stated("adaptive-pays", learnt[7] < 0.3 * watched[7] and learnt[7] < 0.1 * held[7])
-    stated("adaptive-observer-at-once", watched[4] < 0.5 * learnt[4])
-    excited = {n: np.array(x, float) for n, x in kept("excitation", "settled").items()}
-    stated("adaptive-five-fell", excited["learning"][-1, 4] < excited["not learning"][-1, 4])
 
 
 def _rounded_figure() -> Illustration:

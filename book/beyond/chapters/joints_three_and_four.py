@@ -21,7 +21,6 @@ from ddlib.figures import (
 )
 from ddlib.tables import Table, quote, significant, spread
 from workshop.report import results
-from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, bootstrap, judged, median
 
 _MARKERS = "os^Dv*"
@@ -253,28 +252,6 @@ def _quoted() -> None:
     costs = _read("costs")[-1]
     quote("joints-cost-network", costs["network"])
     quote("joints-cost-general", costs["Newton-Euler, general"])
-
-
-def _said() -> None:
-    """What stands behind words of the prose."""
-    draws = _draws()
-    plain, chosen = draws["as in the report"], draws["training chosen"]
-    others = results.read("loop-conditions")["windows"]
-    shares = [np.median(chosen) / np.median(plain)]
-    shares += [np.median(others["chosen"]) / np.median(others["as it is"])]
-    stated("joints-again-less", bool(max(shares) < 0.8))
-    stated("joints-again-helps", resampled(chosen / plain) < 1)
-    by_joint = results.read("joints-chosen")["by joint"]
-    twenty = _row(_DAMPED, joints=4, motions=20)["by joint"]
-    stated(
-        "joints-again-short",
-        bool(np.median(_further(by_joint)) > 0.22 > np.median(_further(twenty))),
-    )
-    few, many = (np.median(others[f"{n} of twenty"]) for n in (300, 750))
-    stated("joints-few-windows", bool(few > 2 * many))
-    stated("joints-linear-first", resampled(plain / draws["linear filter"]) > 1)
-    stated("joints-breaks-at-seven", errors(7, 5) > 1)
-    stated("joints-known-less", bool(np.median(draws["equations"]) < np.median(chosen)))
 
 
 def _answer_figure() -> Illustration:

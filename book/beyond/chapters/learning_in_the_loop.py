@@ -15,7 +15,6 @@ from ddlib.tables import Table, quote, significant, spread
 from ddlib.trajectories import APPENDIX_I, smooth_pick_and_place
 from workshop.chapters.exercises import Exercise, judging
 from workshop.report import results
-from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured
 
 PLAIN = "no feedforward"  # the feedback alone, as the study calls it
@@ -183,33 +182,33 @@ def _missing(lead: int, cut: float | None) -> np.ndarray:
     motion = smooth_pick_and_place(APPENDIX_I[0], np.arange(1500) * CONTROL_STEP)
     rubbing = 0.5 * np.tanh(motion.qd[:, 0] / 0.05)
     needed = _INERTIA * motion.qdd[:, 0] + _FRICTION * motion.qd[:, 0] + rubbing
-    stored, left = 0 * needed, []
+    stored, missing = 0 * needed, []
     for _ in range(100):
-        left.append(np.sqrt(((needed - stored) ** 2).mean()))
+        missing.append(np.sqrt(((needed - stored) ** 2).mean()))
         feedback = lfilter(*answer, needed - stored)
         stored[: len(stored) - lead] += _RATE * feedback[lead:]
         if cut:
             low = butter(2, cut * CONTROL_STEP / np.pi, output="sos")
             stored = sosfiltfilt(low, stored)
-    return np.array(left)
+    return np.array(missing)
 
 
 def _converges_figure() -> Illustration:
     """What a trial multiplies a missing torque with, over its frequency; and a hundred trials."""
     omega = np.geomspace(1, 200, 400)
-    factor, left = {}, {}
+    factor, missing = {}, {}
     for name, (lead, cut) in _MEMORIES.items():
         spring = _SPRING + 1j * omega * _DAMPER
         answer = spring / (spring - _INERTIA * omega**2 + 1j * omega * _FRICTION)
         size = abs(1 - _RATE * answer * np.exp(1j * omega * lead * CONTROL_STEP))
         factor[name] = size / (1 + (omega / cut) ** 4) if cut else size  # there and back
-        left[name] = _missing(lead, cut)
+        missing[name] = _missing(lead, cut)
 
     def draw(figure: Figure):
         over, course = figure.subplots(1, 2)
         for k, name in enumerate(_MEMORIES):
             over.plot(omega, factor[name], color=COLOURS[k], label=name)
-            course.plot(1 + np.arange(100), left[name], color=COLOURS[k])
+            course.plot(1 + np.arange(100), missing[name], color=COLOURS[k])
         over.axhline(1.0, color=INK, ls="--", lw=1.2)
         over.axvline(np.sqrt(_SPRING / _INERTIA), color=FAINT, ls=":", lw=1.2)
         over.set(xscale="log", xlabel="frequency, rad/s", ylabel="factor of a trial")
@@ -218,7 +217,9 @@ def _converges_figure() -> Illustration:
             axis.set_major_formatter(_PLAIN)
         legend_above(figure, *over.get_legend_handles_labels())
 
-    factors = "; ".join(f"{n} {y.min():.2g} at best, {y[-1]:.2g} at last" for n, y in left.items())
+    factors = "; ".join(
+        f"{n} {y.min():.2g} at best, {y[-1]:.2g} at last" for n, y in missing.items()
+    )
     alt = (
         f"Factor of a trial over frequency, and the missing torque over 100 trials, N m: {factors}."
     )
@@ -236,10 +237,7 @@ def show(name: str) -> Illustration:
 
 def part(name: str, setup: str = "joint damping") -> dict:
     """The study's "motion", "family" or "rates" under a reading of the controller."""
-    setups = results.read("learning-in-the-loop")["setups"]
-    if setup not in setups or name not in setups[setup]:
-        raise ValueError(f"name and setup must be of the study, got {name!r}, {setup!r}")
-    return setups[setup][name]
+    return results.read("learning-in-the-loop")["setups"][setup][name]
 
 
 def on(
@@ -354,25 +352,6 @@ def _quoted() -> None:
     share = _DAMPER * (_FRICTION + _DAMPER) / (_SPRING * _INERTIA)
     quote("loop-real-share", share)
     quote("loop-real-until", 1 / np.sqrt(1 - share))
-
-
-def _said() -> None:
-    """What stands behind words of the prose."""
-
-    def over(motion, name):
-        return resampled(on(motion, name) / on(motion, PLAIN))
-
-    motions = list(part("motion")["tests"])
-    everywhere = np.max([over(m, "exact terms") for m in motions], axis=0)
-    stated("loop-exact-everywhere", everywhere < 0.5)
-    brisk = [over(m, "generic terms") for m in motions if "time" in m]
-    stated("loop-generic-faster", np.max(brisk, axis=0) < 0.5)
-    stated("loop-generic-circle", over("circle", "generic terms") > 0.75)
-    plain = family(PLAIN, _WHEN[0])
-    left = {name: resampled(family(name, _WHEN[0]) / plain) for name in _NOTHING}
-    learnt = [left[name] < 0.5 for name in ("last layer", "linear filter")]
-    slow = [left[name] > 0.5 for name in ("replay", "one pass", "by feedback")]
-    stated("loop-from-nothing", np.all(learnt + slow, axis=0))
 
 
 def _exercise(number: int, *given) -> Exercise:

@@ -19,7 +19,6 @@ from ddlib.learning import p_value
 from ddlib.tables import quote, significant
 from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.report import results
-from workshop.report.evidence.statements import stated
 from workshop.report.evidence.verdicts import Measured, judged, mean, median
 
 # from the configuration of the TX40's source
@@ -233,13 +232,6 @@ def _alike() -> dict[str, float]:
     return {name: float(rms(np.array(models[name]["test"]))) for name in _ALIKE}
 
 
-def _closed(power: int = 1) -> float:
-    """Share of the network's gap to the equations that the wiring closes, in powers of errors."""
-    errors = _alike()
-    wide, own, least = (errors[n] ** power for n in ("network", "network, by joint", "equations"))
-    return (wide - own) / (wide - least)
-
-
 def coulomb_apart() -> float:
     """How far newton metres for an ampere of Coulomb friction are apart at joints 1 to 5."""
     data = Windowed.of(_RATE, 11)
@@ -250,48 +242,24 @@ def coulomb_apart() -> float:
 
 def _quoted() -> None:
     """The numbers of the prose."""
+    alike = _alike()
     for name, short in _ALIKE.items():
-        quote(f"real-alike-{short}", _alike()[name])
-    quote("real-alike-closed-squares", 100 * _closed(2))
+        quote(f"real-alike-{short}", alike[name])
+    wide, own, least = (alike[n] ** 2 for n in ("network", "network, by joint", "equations"))
+    quote("real-alike-closed-squares", 100 * (wide - own) / (wide - least))
     friction = 100 * np.array(_row(11)["friction"])
     quote("real-friction-least", friction.min())
     quote("real-friction-most", friction.max())
     quote("real-coulomb-off", 100 * coulomb_apart())
     for what in WORTH:
         quote(f"real-{what}-joints", int(beyond_null(what).value))
+    for model, short in (("network", "network"), ("ridge", "linear"), ("identified", "equations")):
+        best = min(rms(squares(width, model)) for width in (5, 11, 21, 41, 81))
+        quote(f"real-best-{short}", best)
+    unrelated = min(named(x).mean() for x in _row(21)["nulls"].values())
+    quote("real-names-times", unrelated / named(_row(21)["real"]).mean())
     for name, value in swinging.numbers().items():
         quote(f"two-{name}", value)
-
-
-def _said() -> None:
-    """What stands behind words of the prose."""
-    alike = _alike()
-    stated("real-wired", bool(0.6 < _closed() < 0.73))
-    stated(
-        "real-wired-linear", alike["linear filter, by joint"] < 1.05 * alike["network, by joint"]
-    )
-    stated("real-friction-everywhere", bool(min(_row(11)["friction"]) > 0.5))
-    best = {
-        model: min(rms(squares(w, model)) for w in (5, 11, 21, 41, 81))
-        for model in ("network", "ridge", "identified")
-    }
-    stated("real-network-loses", bool(best["network"] > best["ridge"] > best["identified"]))
-    stated("real-fewer-names", excess(21).replicates < 0)
-    stated("real-tuned-turns", alike["network"] < alike["linear filter"])
-    findings = swinging.findings()
-    stated("two-equations-win", findings["equations win"])
-    stated("two-wiggles-cost", findings["wiggles cost"])
-    stated("two-not-rigid", findings["not rigid"])
-    stated("two-longer-less", findings["longer holds less"])
-    stated("two-beyond-nulls", findings["beyond nulls"])
-    stated("two-like-nulls", findings["like nulls"])
-    stated("two-short-shrinks", findings["short shrinks"])
-    stated("two-runs-hardly", findings["two runs hardly"])
-    stated("two-window-matters", findings["window matters"])
-    stated("two-long-err", findings["long windows err"])
-    stated("two-smooth-loses-nothing", findings["smooth loses nothing"])
-    stated("two-instruments-find", findings["instruments find"])
-    stated("two-smoothers-trade", findings["cutoffs trade"] and findings["likeliest fails"])
 
 
 def _parts_figure() -> Illustration:

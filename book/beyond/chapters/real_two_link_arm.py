@@ -112,60 +112,30 @@ def numbers() -> dict[str, float]:
         for name, model in tuned.items()
         for design in _designs()
     }
+    true = {design: _read(design, 41, "published")[0, 0, 2] for design in _designs()}
     two_of_three = [
-        row["moments"][0][0][2] / _read(design, 41, "published")[0, 0, 2]
+        row["moments"][0][0][2] / true[design]
         for design in ("C0", "C1")
         for row in _designs()[design]["predicted"]
     ]
     instruments = [100 * _by(design, "instruments")[0, 0] for design in _designs()]
-    return {
+    inertia = {f"inertia-short-{d}": np.median(_inertia(11)[d][:, 0]) / m for d, m in true.items()}
+    solved = results.read("two-link-longer")["solved"]
+    longer = [np.median(np.array(x["81"])[:, 0, 0, 2]) / true[d] for d, x in solved.items()]
+    elbow = {w: [np.median(x[:, 1]) for x in _inertia(w).values()] for w in (11, 41)}
+    pairs = [row["moments"][1][1][2] for row in _designs()["C1"]["predicted"]]
+    shares = {
         "short-most": 100 * max(short),
         "off": inertia_off().value,
         "moves": elbow_moves().value,
         "sets-least": min(two_of_three),
         "instruments-least": min(instruments),
         "instruments-most": max(instruments),
-    } | middle
-
-
-def _longer(width: str, of) -> list[float]:
-    """Shoulder's inertia over the published one in networks of a longer window, by design."""
-    solved = results.read("two-link-longer")["solved"]
-    true = {design: _read(design, 41, "published")[0, 0, 2] for design in solved}
-    return [of(np.array(x[width])[:, 0, 0, 2]) / true[design] for design, x in solved.items()]
-
-
-def findings() -> dict[str, bool]:
-    """Whether what the lesson says of this arm is so."""
-    won = [_errors(d, "equations") < _errors(d, "network") for d in _designs()]
-    lost = [1 - _gravity(d, kind)[0, 0] for kind in ("measured", "wiggles") for d in _designs()]
-    fast = list(results.read("two-link-longer")["shaken"].values())
-    shorter, longer = _longer("41", np.min), _longer("81", np.max)
-    null = [
-        np.abs(_nulls(d)[:, [0, 1], [0, 1], 2]).max(0) / _inertia()[d].min(0) for d in _designs()
-    ]
-    gains = [[np.median(_inertia(w)[d][:, 0]) for w in (11, 41)] for d in _designs()]
-    short = [float(np.median(moments[:, 1])) for moments in _inertia(11).values()]
-    pairs = [row["moments"][1][1][2] for row in _designs()["C1"]["predicted"]]
-    long = [_gravity(d, "measured")[-1, 0] for d in _designs()]
-    cut = {d: _by(d, "Butterworth")[:, 0] for d in _designs()}
-    known = [_gravity(d, kind)[0, 0] for kind in ("smooth", "rounded") for d in _designs()]
-    return {
-        "equations win": bool(np.hstack(won).mean() > 0.95),
-        "wiggles cost": bool((np.array(lost[3:]) > 0.6 * np.array(lost[:3])).all()),
-        "not rigid": min(x["needed"][1][0] / x["has"][1][0] for x in fast) > 20,
-        "longer holds less": bool((np.array(longer) < shorter).all()),
-        "beyond nulls": bool((null[0] < 1).all()),
-        "like nulls": bool((np.array(null[1:]) > 1).any(1).all()),
-        "short shrinks": all(m < 0.9 * short[0] for m in short[1:]),
-        "two runs hardly": min(pairs) < 1.1 * np.median(_inertia()["A0"][:, 1]),
-        "window matters": bool(all(short < 0.6 * long for short, long in gains)),
-        "long windows err": bool(long[0] < 0.8 and min(long[1:]) > 1.05),
-        "smooth loses nothing": bool(min(known[:3]) > 0.97 and min(known[3:]) > 0.9),
-        "instruments find": bool(all(abs(_by(d, "instruments")[0, 0] - 1) < 0.05 for d in cut)),
-        "cutoffs trade": all(0.85 < x.max() < 0.95 and x[-1] < x.max() / 2 for x in cut.values()),
-        "likeliest fails": bool(all(_by(d, "Kalman")[0, 0] < 0.4 for d in cut)),
+        "longer-most": max(longer),
+        "pairs-least": min(pairs) / elbow[41][0],
+        "elbow-short-most": max(elbow[11][1:]) / elbow[11][0],
     }
+    return shares | middle | inertia
 
 
 def _window_figure() -> figures.Illustration:

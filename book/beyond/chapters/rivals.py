@@ -32,7 +32,6 @@ from ddlib.tables import Table, quote
 from workshop.chapters.backpropagation import NETWORKS
 from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.report import committed, results
-from workshop.report.evidence.statements import stated
 from workshop.report.parity import parity, patterns
 
 _RUBBING, _PARTS = "linear filter with friction", ("trajectory 6", "inside", "outside")
@@ -51,7 +50,7 @@ _SMOOTHED = {
     "learnt": "filters and equations",
     "butterworth": "Butterworth filter",
 }
-_TOLD = {
+_LABELS = {
     "identified": "equations",
     "filters and equations": "learnt filters",
     "Butterworth filter": "Butterworth, equations",
@@ -109,15 +108,16 @@ def smoothed(arm: str = "the report's arm") -> dict:
     return results.read("smoothers")["arms"][arm]["ways"]
 
 
-def learnt_over(against: str = "Butterworth filter") -> list[np.ndarray]:
-    """Errors of learnt filters over a smoother's: on the square, then on two other arms."""
+def learnt_over() -> list[np.ndarray]:
+    """Errors of learnt filters over a Butterworth filter's: on the square, then on two arms."""
     places = [("the report's arm", "inside"), ("the report's arm", "outside")]
     places += [("vertical", "trajectory 6"), ("coarse encoder", "trajectory 6")]
     ratios = []
     for arm, part in places:
         ways = smoothed(arm)
         mine, other = (
-            np.array(ways[name]["errors"][part]) for name in ("filters and equations", against)
+            np.array(ways[name]["errors"][part])
+            for name in ("filters and equations", "Butterworth filter")
         )
         ratios.append(mine / other)
     return ratios
@@ -165,7 +165,7 @@ def show(name: str = "errors") -> Illustration | Table:
     shown = {}
     for name, one in _entered().items():
         errors, stored = _errors(name), np.median(one["count"])
-        shown[_TOLD.get(name, name)] = errors, f"{np.median(errors):.3f}", f"{stored:,.0f}"
+        shown[_LABELS.get(name, name)] = errors, f"{np.median(errors):.3f}", f"{stored:,.0f}"
     order = sorted(shown, key=lambda name: np.median(shown[name][0]))
     medians = "; ".join(f"{name} {shown[name][1]}, {shown[name][2]} numbers" for name in order)
     floor = results.read("rivals")["floor"]["positions"]["trajectory 6"]
@@ -386,10 +386,13 @@ def _quoted() -> None:
         quote(f"rivals-network-{end}", value(_errors(study["reference"])))
     for short, name in _SMOOTHED.items():
         quote(f"rivals-{short}", np.median(_errors(name)))
+    quote("rivals-lead-least", 100 * (1 - max(np.median(ratio) for ratio in learnt_over())))
+    learnt, butterworth = (
+        np.median(np.abs(inertias_off(way)).max(1)) for way in (study["own"], "Butterworth filter")
+    )
+    quote("rivals-off-times", learnt / butterworth)
     of_late_sensor = smoothed("late sensor")[study["own"]]
     quote("rivals-late-applied", np.median(of_late_sensor["applied"]["trajectory 6"]))
-    free = smoothed("late sensor")["Butterworth filter and a delay"]
-    stated("rivals-delay-found", {delay for _, delay in free["setting"]} == {2})  # samples: 20 ms
     won = over("Lagrangian network") < 1
     quote("rivals-lagrangian-won", int(won.sum()))
     quote("rivals-lagrangian-days", len(won))
@@ -402,41 +405,6 @@ def _quoted() -> None:
     quote(
         "rivals-better-square", f"{inside} of these {every} are ahead inside the hull, {elsewhere}"
     )
-
-
-def _said() -> None:
-    """What stands behind words of the prose."""
-    study = results.read("tuned")
-    stated("rivals-equations-ahead", over("identified").max() < 0.8)
-    less = over(study["own"], against="identified")
-    stated("rivals-filters-ahead", np.median(less) < 1)
-    beside = over(study["own"], against="Butterworth filter")
-    stated("rivals-smoother-draws", beside.min() < 1 < beside.max())
-    stated("rivals-learnt-lead", max(x.max() for x in learnt_over()) < 1)
-    off = {name: np.median(np.abs(inertias_off(name))) for name in smoothed()}
-    stated("rivals-inertias-off", off[study["own"]] > 1.5 * sorted(off.values())[-2])
-    draw = over("linear filter")
-    stated("rivals-linear-draws", draw.min() < 1 < draw.max())
-    hull = [over("linear filter", part).max() for part in ("inside", "outside")]
-    stated("rivals-linear-hull", max(hull) < 1)
-    stated("rivals-memory-behind", over("nearest case").min() > 1)
-    within = [n for n, one in _tuned().items() if one["within"] and n != study["own"]]
-    clear = {name for name in within if over(name).max() < 1}
-    stated("rivals-clearly", clear == {"identified", "table of configurations", _RUBBING})
-    stated("rivals-rubbing-ahead", max(over(_RUBBING, part).max() for part in _PARTS) < 0.9)
-    stated("rivals-planes-ahead", over("local planes").max() < 1)
-    networks = {name for name in within if np.median(over(name)) < 1} & {
-        "on states",
-        "second-order steps",
-    }
-    stated("rivals-networks-among", len(networks) == 2)
-    cells = [setting[1] for setting in _tuned()["table of configurations"]["setting"]]
-    stated("rivals-one-cell", set(cells) == {1})
-    stated("rivals-recurrent-behind", over("recurrent").min() > 1)
-    turned = [better(part).value > better().value for part in ("inside", "outside")]
-    stated("rivals-square-turns", all(turned))
-    others = [name for name in within if name != study["reference"] and name not in clear]
-    stated("rivals-others-not", all(over(name).max() > 1 for name in others))
 
 
 def tested(rival: str, part: str = "torque", split: str = "loader") -> np.ndarray:

@@ -22,8 +22,6 @@ from ddlib.simulation import CONTROL_STEP
 from ddlib.tables import quote, significant
 from workshop.chapters.exercises import Exercise, judging
 from workshop.report import results
-from workshop.report.evidence import claims
-from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, median, rank_correlation
 
 _MARKERS = "osD^v"
@@ -219,35 +217,6 @@ def _quoted() -> None:
         quote(f"run-time-load-{line.split()[-1]}", heavy)
     quote("run-time-inside-onset", np.median(onsets()[0]))
     quote("run-time-rank", predicts(width=21).value)
-
-
-def _said() -> None:
-    """What stands behind words of the prose."""
-
-    def both(first: str, second: str, share: float):
-        pairs = [[resampled(errors(line, s)) for line in (first, second)] for s in _SETUPS]
-        return np.all([a < share * b for a, b in pairs], 0)
-
-    stated("run-time-helps", both(NETWORK, "none", 0.5))
-    stated("run-time-equations-do-not", both("none", "exact", 2.0))
-    stated("run-time-behind", both(NETWORK, "exact", 1.0))
-    windowed, network = ([_median(x, s) for s in _SETUPS] for x in ("exact, window 21", NETWORK))
-    equal = 0.8 < windowed[0] / network[0] < 1.25
-    stated("run-time-same-window", equal and windowed[1] < 0.5 * network[1])
-    known = [both(line, NETWORK, 1.0) for line in ("identified", "Lagrangian network")]
-    stated("run-time-structure-wins", np.all(known, 0))
-    names = ("run-time-copy", "run-time-copy-state-feedback")
-    stated("run-time-copy", all(claims.measured(n).replicates.max() < 1 for n in names))
-    turned = [_reading(s)["corner"]["rounded"]["0.1"] for s in _SETUPS]
-    pairs = [[resampled(x[line]) for line in ("exact", "network")] for x in turned]
-    stated("run-time-turned", np.all([a < 0.2 * b for a, b in pairs], 0))
-    heavy = [_reading(s)["changed"]["load"]["10"] for s in _SETUPS]
-    pairs = [[resampled(x[line]) for line in ("network", "none")] for x in heavy]
-    stated("run-time-heavy", np.all([a < b for a, b in pairs], 0))
-    stated("run-time-some", predicts(width=21).replicates > 0)
-    first, second = (_reading(s)["inside"]["network, 5"]["poles"][0][0] for s in _SETUPS)
-    stated("run-time-margins", first > 1 > second)
-    stated("run-time-bounded", max(np.max(_reading(s)["bound"]["share"]) for s in _SETUPS) < 1)
 
 
 def _square_figure() -> Illustration:

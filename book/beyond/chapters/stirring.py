@@ -13,7 +13,6 @@ from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, pick_and_place
 from workshop.chapters.exercises import Exercise, judging
 from workshop.report import results
 from workshop.report.evidence import claims
-from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured
 
 _FAMILIES = ("pick and place", "circles")
@@ -157,58 +156,6 @@ def _quoted() -> None:
     quote("stir-descent-count", int(helping.sum()))
     for key, name in (("five", ""), ("twenty", "-more-motions")):
         quote(f"stir-joints-{key}", claims.measured(f"joints-three-and-four{name}").value)
-
-
-def _said() -> None:
-    """What stands behind words of the prose."""
-
-    def draws(learnt, asked, rival="network"):
-        return resampled(error(rival, learnt, asked))
-
-    pick, circles = _FAMILIES
-    of_pick = resampled(hand("network, pick and place"))
-    stated("stir-worse-than-none", of_pick > hand("none")[0])
-    known, own = hand("identified, pick and place"), hand("network, circles")
-    descended = _descended()["circles"]
-    others = resampled(own), resampled(descended["network"])
-    stated("stir-carries", resampled(known) < np.minimum(*others))
-    stopped = claims.measured("stirring-hand-worse-stopped").replicates
-    stated("stir-stopped-helps", stopped < 1)
-    stopped_early = _stopped()
-    stated("stir-never-sixty", 60 not in stopped_early["steps"])
-    chosen, at_sixty = (resampled(stopped_early["hands"][pick][name]) for name in ("chosen", "60"))
-    stated("stir-stopped-loses-nothing", chosen < 1.1 * at_sixty)
-    sixty = (
-        resampled(stopped_early["hands"][circles]["60"])
-        < stopped_early["hands"][circles]["none"][0]
-    )
-    stated("stir-harm-later", sixty & (of_pick > hand("none")[0]))
-    stated("stir-network-stays", draws(pick, circles) > 5 * draws(circles, circles))
-    both = [draws("both", family) < 1.25 * draws(family, family) for family in _FAMILIES]
-    stated("stir-both-costs-nothing", both[0] & both[1])
-    small = draws(pick, "small circles")
-    stated("stir-small-known", 2 * small < draws(pick, circles))
-    stated("stir-small-worse", small > 1.5 * draws("both", "small circles"))
-    stated("stir-descent-helps", others[1] < descended["none"][0])
-    linear = np.median(hand("linear filter, pick and place"))
-    stated("stir-descent-linear", (0.8 * linear < others[1]) & (others[1] < 1.25 * linear))
-    five, twenty = (
-        claims.measured(f"joints-three-and-four{name}").replicates for name in ("", "-more-motions")
-    )
-    stated("stir-joints-fail", five > 0.22)
-    stated("stir-joints-do", twenty < 0.22)
-    covered = _row()["coverage"]
-    shared = {
-        (part, family): [
-            covered[part][family][k]["shared"] for k in ("other family", "same family")
-        ]
-        for part in ("all", "velocities")
-        for family in _FAMILIES
-    }
-    stated("stir-apart", all(shared["all", f][0] < 0.1 * shared["all", f][1] for f in _FAMILIES))
-    new, old = (shared["velocities", family] for family in (circles, pick))
-    stated("stir-velocities-new", new[0] < 0.5 and new[0] < 0.6 * new[1])
-    stated("stir-velocities-back", old[0] > 0.8 * old[1])
 
 
 def _exercise(number: int, *given) -> Exercise:

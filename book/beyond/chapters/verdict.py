@@ -267,8 +267,6 @@ def _sections(counts: Mapping[str, Mapping[str, int]]) -> Illustration:
 
     A part has its number in it, unless it is too narrow to hold that.
     """
-    if not counts:
-        raise ValueError("counts must hold one section or more, got none")
     names = list(next(iter(counts.values())))
 
     def draw(figure: Figure):
@@ -342,8 +340,6 @@ class _Agreement(NamedTuple):
 def _agreement(pairs: Iterable[tuple[str, str]]) -> _Agreement:
     """Whether pairs of verdicts agree more often than shuffled ones."""
     pairs = list(pairs)
-    if len(pairs) < 2:
-        raise ValueError(f"pairs must be two or more, got {len(pairs)}")
     first, second = np.array(pairs).T
     same, rng = int((first == second).sum()), np.random.default_rng(0)
     drawn = np.array([(first == rng.permutation(second)).sum() for _ in range(_SHUFFLES)])

@@ -12,11 +12,8 @@ import control
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from ddlib._check import integer, number, one_of, shaped
-from ddlib.control.controllers import PID, ControlLaw, Controller, Feedforward, as_controller
+from ddlib.control.controllers import PID, ControlLaw, Controller, as_controller
 from ddlib.trajectories import Trajectory
-
-_BETWEEN = ("window", "line", "hold")
 
 
 def reference_windows(q, width: int, every: int) -> np.ndarray:
@@ -40,29 +37,9 @@ class WindowFeedforward:
     width: int  # odd
     every: int = 5  # control periods between two samples of a window: 10 ms by 2 ms
     between: str = "window"  # or "line" or "hold"
-    step: float | None = None  # sampling period of the windows of training, s; see `check`
-
-    def __post_init__(self):
-        if integer("width", self.width, 3) % 2 == 0:
-            raise ValueError(f"width must be odd, so that a window has a centre, got {self.width}")
-        integer("every", self.every, 1)
-        one_of("between", self.between, _BETWEEN)
-        if self.step is not None:
-            number("step", self.step, 0.0, open_low=True)
-
-    def check(self, control_step: float) -> None:
-        """Refuse a loop in which the windows' sampling period would not be the model's."""
-        period = self.every * number("control_step", control_step, 0.0, open_low=True)
-        if self.step is not None and abs(period / self.step - 1) > 1e-6:
-            raise ValueError(
-                f"every must make the loop's windows those of the model: {self.every} control "
-                f"periods of {control_step:g} s are {period:g} s, and the model was trained on "
-                f"samples {self.step:g} s apart"
-            )
 
     def __call__(self, q, qd, qdd) -> np.ndarray:
         """Torque for every sample of a reference ``(..., time, joint)`` by its positions."""
-        q = shaped("q", q, "(..., time, joint)")
         time = q.shape[-2]
         stride = 1 if self.between == "window" else self.every
         at_rest = np.repeat(q[..., -1:, :], stride - 1, -2)  # a window after the end, too
@@ -70,8 +47,7 @@ class WindowFeedforward:
         windows = windows[..., ::stride, :, :]
         centres = windows.shape[-3]
         cases = windows.reshape(-1, *windows.shape[-2:])
-        torque = shaped("model(windows)", self.model(cases), f"({len(cases)}, {q.shape[-1]})")
-        torque = torque.reshape(*q.shape[:-2], centres, q.shape[-1])
+        torque = self.model(cases).reshape(*q.shape[:-2], centres, q.shape[-1])
         if stride == 1:
             return torque
         now = np.arange(time)
@@ -81,23 +57,6 @@ class WindowFeedforward:
         share = (now % stride / stride)[:, None]
         after = torque[..., np.minimum(now // stride + 1, centres - 1), :]
         return before + share * (after - before)
-
-
-@dataclass(frozen=True)
-class PlannedTorque:
-    """Torques of a planned motion by a model of windows, added to a feedback law (Figure 2-1).
-
-    `ddlib.control.Feedforward` does the same for any model; this one knows that a model of windows
-    has a sampling period, and refuses a loop that does not give it.
-    """
-
-    feedforward: WindowFeedforward
-    feedback: Controller
-
-    def start(self, reference: Trajectory, step: float) -> ControlLaw:
-        """The law that follows `reference`, called every `step` s."""
-        self.feedforward.check(step)
-        return Feedforward(self.feedforward, self.feedback).start(reference, step)
 
 
 @dataclass(frozen=True)
@@ -114,7 +73,6 @@ class MeasuredWindows:
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
         """The law of one run: feedback, and the model's torque for measured windows."""
         feedforward = self.feedforward
-        feedforward.check(step)
         feedback = as_controller(self.feedback).start(reference, step)
         half, share = feedforward.width // 2, np.asarray(self.share, float)[..., None, None]
         taps = feedforward.every * np.arange(-half, half + 1)
@@ -133,10 +91,7 @@ class MeasuredWindows:
             windows = np.broadcast_to(windows, (*past.shape[:-1], feedforward.width)).copy()
             windows[..., : half + 1] += past
             cases = windows.reshape(-1, *windows.shape[-2:])
-            torque = shaped(
-                "model(windows)", feedforward.model(cases), f"({len(cases)}, {q.shape[-1]})"
-            )
-            return torque.reshape(windows.shape[:-1]) + feedback(k, q, qd)
+            return feedforward.model(cases).reshape(windows.shape[:-1]) + feedback(k, q, qd)
 
         return law
 

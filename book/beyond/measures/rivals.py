@@ -16,8 +16,6 @@ def row(rival: str, inputs: str = "positions", size=None) -> dict:
     rows = [r for r in study["rows"] if (r["rival"], r["inputs"]) == (rival, inputs)]
     if size is not None:
         rows = [r for r in rows if r["size"] == size]
-    if not rows:
-        raise ValueError(f"rival must be one of the study, got {rival!r}, {inputs!r}, {size!r}")
     within = [r for r in rows if r["count"] <= study["budget"]]
     by_count = itemgetter("count")
     return max(within, key=by_count) if within else min(rows, key=by_count)

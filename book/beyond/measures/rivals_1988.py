@@ -31,10 +31,8 @@ def _rows(name: str, **wanted) -> list[dict]:
 
 def row(name: str, **wanted) -> dict:
     """The one row of a result whose entries have these values."""
-    rows = _rows(name, **wanted)
-    if len(rows) != 1:
-        raise ValueError(f"wanted must name one row of {name}, got {wanted}: {len(rows)} rows")
-    return rows[0]
+    (one_row,) = _rows(name, **wanted)
+    return one_row
 
 
 # --- tables -----------------------------------------------------------------------------------
@@ -69,10 +67,7 @@ def full_cells(way: str) -> int:
     Such a table has the right torque in every cell; `way` is "constant" in each, or "multilinear".
     """
     full = results.read("rivals-tables")["full"]
-    good_enough = np.array(full[way]) <= PRINTED
-    if not good_enough.any():
-        raise ValueError(f"way must reach {PRINTED} with some number of cells, got {way!r}")
-    return full["cells"][int(np.argmax(good_enough))]
+    return full["cells"][int(np.argmax(np.array(full[way]) <= PRINTED))]
 
 
 def stored(way: str) -> Measured:

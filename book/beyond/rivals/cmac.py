@@ -7,8 +7,6 @@ from scipy import sparse
 from scipy.linalg import solve_triangular
 
 from beyond.rivals.tables import Bounded
-from ddlib._check import integer, number
-from ddlib.dynamics import Operations
 
 _BLOCK = 300  # cases whose updates are solved at once, by one triangular system
 _WORSE = 1e3  # a training error that has grown this many times has diverged
@@ -44,10 +42,8 @@ class CMAC(Bounded):
         beyond: str = "refuse",  # or "edge"
     ):
         super().__init__(limits, beyond)
-        self.layers, self.epochs = integer("layers", layers, 1), integer("epochs", epochs, 1)
-        self.width = number("width", width, 0.0, 1.0, open_low=True)
-        self.slots = slots if slots is None else integer("slots", slots, 1)
-        self.rate = number("rate", rate, 0.0, 2.0, open_low=True)
+        self.layers, self.width, self.slots = layers, width, slots
+        self.rate, self.epochs = rate, epochs
 
     def _fit(self, x, torque):
         cubes = self._cubes(self._bound(x))
@@ -98,10 +94,6 @@ class CMAC(Bounded):
         """Numbers of the cubes that states lie in, shape (cases, layers); u from 0 to 1."""
         u = u.reshape(len(u), -1)
         edge = int(np.ceil(1 / self.width - 1e-9)) + 1
-        if self.layers * float(edge) ** u.shape[1] > 2**62:
-            raise ValueError(
-                f"width must leave fewer than 2^62 cubes, got {self.width:g} for {u.shape[1]} axes"
-            )
         shift = np.arange(self.layers) / self.layers
         place = np.floor(u[:, None] / self.width + shift[:, None]).astype(np.int64)
         number = np.broadcast_to(np.arange(self.layers), place.shape[:2]).copy()
@@ -125,11 +117,6 @@ class CMAC(Bounded):
         """Numbers kept."""
         addresses = len(self.known) if self.slots is None else 0
         return self.weights.size + addresses + self.low.size + self.high.size
-
-    def operations(self):
-        """Arithmetic of one prediction."""
-        axes, joints = self.low.size, self.weights.shape[1]
-        return Operations(axes, axes * self.layers + (self.layers - 1) * joints)
 
 
 def _error(left, deviation) -> float:

@@ -17,9 +17,7 @@ from sklearn.kernel_approximation import RBFSampler
 from sklearn.linear_model import RidgeCV
 
 from beyond.rivals.identified import Identified
-from beyond.rivals.protocol import INPUTS, Rival
-from ddlib._check import integer, one_of, positive, seed_number
-from ddlib.dynamics import Operations
+from beyond.rivals.protocol import Rival
 from ddlib.identification import FRICTION, GRAVITY, RIGID
 
 _STEPS = 100  # iterations that a search for hyperparameters may take
@@ -36,11 +34,8 @@ class _Inputs:
             spread = flat.std(0)
             self.matrix = np.diag(1 / np.where(spread > 0, spread, 1.0))
         else:
-            number = integer("directions", directions, 1, min(flat.shape))
             _, size, basis = np.linalg.svd(flat - self.mean, full_matrices=False)
-            if not size[number - 1] > 0:
-                raise ValueError(f"directions must be at most {(size > 0).sum()}, got {number}")
-            self.matrix = basis[:number].T * (np.sqrt(len(x)) / size[:number])
+            self.matrix = basis[:directions].T * (np.sqrt(len(x)) / size[:directions])
         self.diagonal = directions is None
 
     def __call__(self, x) -> np.ndarray:
@@ -49,12 +44,6 @@ class _Inputs:
 
     def count(self) -> int:
         return self.mean.size + (self.mean.size if self.diagonal else self.matrix.size)
-
-    def operations(self) -> Operations:
-        inputs, features = self.matrix.shape
-        if self.diagonal:
-            return Operations(inputs, inputs)
-        return Operations(inputs * features, inputs + (inputs - 1) * features)
 
 
 class GaussianProcess(Rival):
@@ -74,11 +63,8 @@ class GaussianProcess(Rival):
         restarts: int = 1,  # further searches, from random starts
         seed: int = 0,
     ):
-        self.kind = one_of("kind", kind, INPUTS)
-        self.directions = directions
-        self.subset = integer("subset", subset, 2)
-        self.restarts = integer("restarts", restarts, 0)
-        self.seed = seed_number("seed", seed)
+        self.kind, self.directions = kind, directions
+        self.subset, self.restarts, self.seed = subset, restarts, seed
 
     def _fit(self, x, torque):
         self.inputs = _Inputs(x, self.directions)
@@ -117,33 +103,11 @@ class GaussianProcess(Rival):
         each = [process.predict(features, return_std=True)[1] for process in self.processes]
         return self.unit * np.stack(each, -1)
 
-    @property
-    def lengths(self) -> np.ndarray:
-        """Lengths of the kernel, shape (joint, features); a long one matters little."""
-        return np.stack([process.kernel_.k1.k2.length_scale for process in self.processes])
-
-    @property
-    def noise(self) -> np.ndarray:
-        """Standard deviation of the noise that was found, shape (joint,), in units of torque."""
-        level = [process.kernel_.k2.noise_level for process in self.processes]
-        return self.unit * np.sqrt(level)
-
     def count(self):
         """Stored numbers: the cases, their weights, the kernels; intervals would need more."""
         joints, (cases, features) = len(self.processes), self.processes[0].X_train_.shape
         kernel = features + 1
         return self.inputs.count() + cases * features + joints * (cases + kernel + 2)
-
-    def operations(self):
-        """Arithmetic of the mean: every case of training is looked at."""
-        joints, (cases, features) = len(self.processes), self.processes[0].X_train_.shape
-        own = self.inputs.operations()
-        return Operations(
-            own.multiplications + joints * (cases * (2 * features + 1) + 1),
-            own.additions + joints * (cases * 2 * features + 1),
-            0,
-            joints * cases,
-        )
 
 
 class SemiParametric(Rival):
@@ -155,10 +119,10 @@ class SemiParametric(Rival):
 
     def _fit(self, x, torque):
         self.known._fit(x, torque)
-        left = torque - self.parametric(x)
-        self.exact = bool((left.std(0) <= _TINY * torque.std(0)).all())
+        residual = torque - self.parametric(x)
+        self.exact = bool((residual.std(0) <= _TINY * torque.std(0)).all())
         if not self.exact:
-            self.rest._fit(x, left)
+            self.rest._fit(x, residual)
 
     def parametric(self, x) -> np.ndarray:
         """The part of the torque that the equations explain, ``(cases, joint)``."""
@@ -177,14 +141,6 @@ class SemiParametric(Rival):
         """Stored numbers of the equations and of the processes."""
         return self.known.count() + (0 if self.exact else self.rest.count())
 
-    def operations(self):
-        """Operations of the equations, of the processes, and to add both."""
-        own = self.known.operations()
-        if self.exact:
-            return own
-        both = Operations(*(a + b for a, b in zip(own, self.rest.operations())))
-        return both._replace(additions=both.additions + 2)
-
 
 class RandomFeatures(Rival):
     """Ridge regression on random cosines of the inputs (Rahimi & Recht 2007)."""
@@ -200,11 +156,8 @@ class RandomFeatures(Rival):
         lengths: Sequence[float] = (1.0, 2.0, 4.0, 8.0, 16.0),  # to try, of standardised inputs
         seed: int = 0,
     ):
-        self.kind = one_of("kind", kind, INPUTS)
-        self.features = integer("features", features, 1)
-        self.directions = directions
-        self.lengths = tuple(positive("lengths", lengths, "(lengths,)"))
-        self.seed = seed_number("seed", seed)
+        self.kind, self.features, self.directions = kind, features, directions
+        self.lengths, self.seed = lengths, seed
 
     def _fit(self, x, torque):
         self.inputs = _Inputs(x, self.directions)
@@ -228,16 +181,6 @@ class RandomFeatures(Rival):
         """Stored numbers: of the inputs, the cosines, and their factors."""
         inputs, joints = self.inputs.matrix.shape[1], len(self.level)
         return self.inputs.count() + self.features * (inputs + 1 + joints) + 3 * joints
-
-    def operations(self):
-        """Operations for one torque of all joints."""
-        inputs, joints, own = self.inputs.matrix.shape[1], len(self.level), self.inputs.operations()
-        return Operations(
-            own.multiplications + self.features * (inputs + joints),
-            own.additions + self.features * (inputs + joints) + joints,
-            0,
-            self.features,
-        )
 
 
 def _ascend(objective, start, bounds):

@@ -9,11 +9,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from beyond.rivals.protocol import INPUTS, Rival, derivative_filters
-from ddlib._check import integer, number, one_of
-from ddlib.dynamics import Operations, Tape
-from ddlib.identification import FRICTION, GRAVITY, RIGID, SIGN_SPEED, from_states, least_squares
-from ddlib.learning import check_width
+from beyond.rivals.protocol import Rival, derivative_filters
+from ddlib._check import one_of
+from ddlib.identification import FRICTION, GRAVITY, RIGID, from_states, least_squares
 
 _RIDGES = tuple(10.0**k for k in range(-12, 1))  # of the largest singular value squared
 
@@ -31,8 +29,6 @@ class Identified(Rival):
         self.names = tuple(names)
 
     def _fit(self, x, torque):
-        if x.shape[1] != 2:
-            raise ValueError(f"x must have 2 joints for {self!r}, got {x.shape[1]}")
         self.estimate = least_squares(from_states(*np.moveaxis(x, -1, 0), torque, self.names))
 
     def _torque(self, x):
@@ -47,41 +43,6 @@ class Identified(Rival):
         """Stored numbers: the parameters."""
         return len(self.names)
 
-    def operations(self):
-        """Arithmetic of the equations; what is shared is computed once, and a cut is free."""
-        tape = Tape()
-        state = [[tape.unknown(0.3 + j + k) for j in range(2)] for k in range(3)]
-        constants = {name: tape.known(0.7 + k) for k, name in enumerate(self.names)}
-        return tape.needed(_written_out(*state, constants))
-
-
-def _written_out(q, qd, qdd, constants) -> list:
-    """The torques of both joints as a formula, for counting: what is 0 is left out."""
-    (q1, q2), (v1, v2), (a1, a2) = q, qd, qdd
-    c2, s2 = np.cos(q2), np.sin(q2)
-    columns = {
-        "a": (a1, None),
-        "b": (c2 * (2 * a1 + a2) - s2 * v2 * (2 * v1 + v2), c2 * a1 + s2 * v1 * v1),
-        "d": (a2, a1 + a2),
-        "g1": (np.sin(q1), None),
-        "g2": (np.sin(q1 + q2),) * 2,
-        "F_v1": (v1, None),
-        "F_v2": (None, v2),
-        "F_c1": (_blurred(v1), None),
-        "F_c2": (None, _blurred(v2)),
-    }
-    torques = [0.0, 0.0]
-    for name, constant in constants.items():
-        for j, column in enumerate(columns[name]):
-            if column is not None:
-                torques[j] = torques[j] + constant * column
-    return torques
-
-
-def _blurred(speed):
-    """The sign of a speed before it is cut off at 1; comparisons are free."""
-    return speed * (1 / SIGN_SPEED)
-
 
 class Linear(Rival):
     """Linear least squares on windows or states, with a constant and a ridge.
@@ -92,15 +53,10 @@ class Linear(Rival):
     """
 
     def __init__(self, kind="windows", width=None, ridge=None, blocks=5):
-        self.kind = one_of("kind", kind, INPUTS)
-        self.width = None if width is None else check_width(width)
-        self.ridge = None if ridge is None else number("ridge", ridge, 0.0)
-        self.blocks = integer("blocks", blocks, 2)
+        self.kind, self.width, self.ridge, self.blocks = kind, width, ridge, blocks
 
     def _fit(self, x, torque):
         samples = x.shape[-1]
-        if self.width is not None and self.width > samples:
-            raise ValueError(f"width must be at most the window's {samples}, got {self.width}")
         cut = 0 if self.width is None else (samples - self.width) // 2
         self._used = slice(cut, samples - cut)
         x = self._rows(x)
@@ -112,13 +68,11 @@ class Linear(Rival):
         return x[..., self._used].reshape(len(x), -1)
 
     def _choose(self, x, torque) -> float:
-        if len(x) < 2 * self.blocks:
-            raise ValueError(f"data must hold {2 * self.blocks} cases or more, got {len(x)}")
         lost, scale = np.zeros(len(_RIDGES)), torque.std(0)
         for part in np.array_split(np.arange(len(x)), self.blocks):
             matrices, constants = _ridge(np.delete(x, part, 0), np.delete(torque, part, 0), _RIDGES)
-            left = (x[part] @ matrices + constants[:, None] - torque[part]) / scale
-            lost += (left**2).sum((1, 2))
+            residual = (x[part] @ matrices + constants[:, None] - torque[part]) / scale
+            lost += (residual**2).sum((1, 2))
         return _RIDGES[int(lost.argmin())]
 
     def _torque(self, x):
@@ -127,10 +81,6 @@ class Linear(Rival):
     def count(self):
         """Stored numbers: weights of the filters, and constants."""
         return self.matrix.size + self.constant.size
-
-    def operations(self):
-        """Arithmetic: a product and a sum for each weight."""
-        return Operations(self.matrix.size, self.matrix.size)
 
 
 class LinearWithSigns(Linear):

@@ -15,13 +15,9 @@ import torch
 from torch import nn
 from torch.nn import functional
 
-from beyond.rivals.protocol import NotFitted, Rival
-from ddlib._check import finite_array, integer, number, one_of, seed_number
-from ddlib.dynamics import Operations
+from beyond.rivals.protocol import Rival
 from ddlib.identification import SIGN_SPEED
 
-_GRAVITIES = ("potential", "vector", "none")
-_DIAGONALS = ("softplus", "relu")
 AS_PUBLISHED = {  # options like those of the public code; there 10,000 epochs follow
     "hidden": (64, 64),
     "gravity": "potential",
@@ -147,20 +143,11 @@ class LagrangianNetwork(Rival):
         seed: int = 0,  # of the initial weights and the order of cases
         watch: Callable[[int, LagrangianNetwork], None] | None = None,  # after each epoch of Adam
     ):
-        self.hidden = tuple(integer("hidden", units, 1) for units in hidden)
-        integer("hidden layers", len(self.hidden), 1)
-        self.gravity_from = one_of("gravity", gravity, _GRAVITIES)
-        self.friction, self.annealed, self.scaled = bool(friction), bool(annealed), bool(scaled)
-        self.diagonal = one_of("diagonal", diagonal, _DIAGONALS)
-        self.floor = number("floor", floor, 0.0, open_low=True)
-        self.gain, self.bias = number("gain", gain, 0.0), number("bias", bias)
-        self.epochs = integer("epochs", epochs, 0)
-        self.batch = integer("batch", batch, 1)
-        self.rate = number("rate", rate, 0.0, open_low=True)
-        self.decay = number("decay", decay, 0.0)
-        self.finish = integer("finish", finish, 0)
-        self.seed = seed_number("seed", seed)
-        self.watch = watch
+        self.hidden, self.gravity_from, self.friction = hidden, gravity, friction
+        self.diagonal, self.floor, self.gain, self.bias = diagonal, floor, gain, bias
+        self.epochs, self.batch, self.rate, self.annealed = epochs, batch, rate, annealed
+        self.decay, self.finish, self.scaled = decay, finish, scaled
+        self.seed, self.watch = seed, watch
 
     def _fit(self, x, torque):
         joints = x.shape[1]
@@ -248,9 +235,6 @@ class LagrangianNetwork(Rival):
 
     def _parts(self, q):
         """Triangle, its derivatives by position, gravity and potential, in scaled units."""
-        if not hasattr(self, "network"):
-            raise NotFitted(f"{self!r} has learnt nothing: call fit first")
-        q = finite_array("q", q, self.network.joints)
         flat = (q.reshape(-1, q.shape[-1]) - self.units.mean) / self.units.spread
         position = torch.tensor(flat).to(self.network.places)
         with torch.no_grad():
@@ -270,8 +254,6 @@ class LagrangianNetwork(Rival):
 
     def potential_energy(self, q) -> np.ndarray:
         """Potential that was learnt, but for a constant, shape ``(...)``, J."""
-        if self.gravity_from != "potential":
-            raise ValueError(f"gravity must be 'potential', got {self.gravity_from!r}")
         lead, (*_, potential) = self._parts(q)
         return self.units.torque * potential.reshape(lead)
 
@@ -279,26 +261,6 @@ class LagrangianNetwork(Rival):
         """Stored numbers: the weights, and the units if scaled."""
         numbers = sum(p.numel() for p in self.network.parameters())
         return numbers + (2 * self.network.joints + 2 if self.scaled else 0)
-
-    def operations(self):
-        """Arithmetic of the layers, of their derivatives, and of Lagrange's equation."""
-        joints, triangle = self.network.joints, self.network.triangle
-        outputs = self.network.head.out_features
-        products = sums = functions = 0
-        before = joints
-        for layer, units in enumerate(self.hidden):
-            ways = joints if layer else 0  # the first layer's derivatives are its weights
-            products += units * (before + joints + ways * before)
-            sums += units * (before + ways * (before - 1))
-            functions += 2 * units
-            before = units
-        products += outputs * before * (1 + joints) + joints * joints
-        sums += outputs * (before + joints * (before - 1))
-        products += triangle * (4 + 2 * joints) + 2 * joints**2 + joints
-        sums += triangle * (4 + 2 * joints) + 2 * joints**2 + 3 * joints
-        products += joints * (2 * self.friction + 4 * self.scaled)
-        sums += joints * (2 * self.friction + self.scaled)
-        return Operations(products, sums, 0, functions + 2 * joints)
 
 
 def _across(lower, x):

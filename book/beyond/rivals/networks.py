@@ -10,9 +10,7 @@ import numpy as np
 import torch
 from torch import nn
 
-from beyond.rivals.protocol import INPUTS, Rival
-from ddlib._check import integer, number, one_of, seed_number
-from ddlib.dynamics import Operations
+from beyond.rivals.protocol import Rival
 from ddlib.learning import (
     INITIAL,
     NotConverged,
@@ -33,14 +31,11 @@ class _Network(Rival):
     def __init__(
         self, hidden=HIDDEN_UNITS, kind="windows", *, initial=INITIAL, scaling=(0.0, 1.0), seed=0
     ):
-        self.kind, self.hidden = one_of("kind", kind, INPUTS), integer("hidden", hidden, 1)
-        self.initial = number("initial", initial, 0.0, open_low=True)
-        self.scaling, self.seed = scaling, seed_number("seed", seed)
+        self.kind, self.hidden, self.initial = kind, hidden, initial
+        self.scaling, self.seed = scaling, seed
 
     def _fit(self, x, torque):
         low, high = (x.min(0), x.max(0)) if self.kind == "states" else (0.0, 1.0)
-        if np.any(high <= low):
-            raise ValueError("x must vary in every position, velocity and acceleration")
         self._range = low, high - low
         data = TrainingSet.from_arrays(self._even(x), torque, scaling=self.scaling)
         self.model = self._train(data)
@@ -66,12 +61,6 @@ class _Network(Rival):
         weights = self.model.weights
         return weights.count(biases=True) + 2 * weights.output_bias.size
 
-    def operations(self):
-        weights = self.model.weights
-        units = weights.hidden_bias.size + weights.output_bias.size
-        each, outputs = weights.count(), weights.output_bias.size
-        return Operations(each + outputs, each + units + outputs, units, units)
-
 
 class ByDescent(_Network):
     """The network by batch descent with momentum, as `ddlib.learning.train_ensemble`."""
@@ -80,8 +69,7 @@ class ByDescent(_Network):
         self, hidden=HIDDEN_UNITS, epochs=EPOCHS, *, rate=None, momentum=0.95, warm_up=0, **options
     ):
         super().__init__(hidden, **options)
-        self.epochs = integer("epochs", epochs, 1)
-        self.rate, self.momentum, self.warm_up = rate, momentum, warm_up
+        self.epochs, self.rate, self.momentum, self.warm_up = epochs, rate, momentum, warm_up
 
     def _train(self, data):
         options = {"rate": self.rate, "momentum": self.momentum, "warm_up": self.warm_up}
@@ -100,7 +88,7 @@ class BySolver(_Network):
 
     def __init__(self, hidden=HIDDEN_UNITS, steps=60, *, decay=0.0, **options):
         super().__init__(hidden, **options)
-        self.steps, self.decay = integer("steps", steps, 1), number("decay", decay, 0.0)
+        self.steps, self.decay = steps, decay
 
     def _train(self, data):
         with warnings.catch_warnings():
@@ -116,7 +104,7 @@ class ByAdam(_Network):
 
     def __init__(self, hidden=HIDDEN_UNITS, epochs=3000, *, rate=0.02, decay=0.01, **options):
         super().__init__(hidden, **{"scaling": (-1.0, 1.0), **options})
-        self.epochs, self.rate, self.decay = integer("epochs", epochs, 1), rate, decay
+        self.epochs, self.rate, self.decay = epochs, rate, decay
 
     def _train(self, data):
         joints, width = data.x.shape[1:]
@@ -162,9 +150,8 @@ class _Sequence(Rival):
     kind = "windows"
 
     def __init__(self, channels=16, epochs=100, *, rate=0.01, decay=0.01, seed=0):
-        self.channels, self.epochs = integer("channels", channels, 1), integer("epochs", epochs, 1)
-        self.rate = number("rate", rate, 0.0, open_low=True)
-        self.decay, self.seed = number("decay", decay, 0.0), seed_number("seed", seed)
+        self.channels, self.epochs = channels, epochs
+        self.rate, self.decay, self.seed = rate, decay, seed
 
     @abstractmethod
     def _network(self, joints: int, width: int, outputs: int) -> nn.Module:
@@ -174,8 +161,6 @@ class _Sequence(Rival):
         joints, width = x.shape[1:]
         self.scale = [(each.mean((0, 2)), each.std((0, 2))) for each in self._parts(x)]
         self.offset, self.spread = torque.mean(0), torque.std(0)
-        if not (np.ptp(x, (0, 2)) > 0).all() or not (np.ptp(torque, 0) > 0).all():
-            raise ValueError("x and torque must vary in each joint")
         with torch.random.fork_rng(devices=[]):
             torch.manual_seed(self.seed)
             self.network = self._network(joints, width, torque.shape[1])
@@ -214,8 +199,6 @@ class Convolution(_Sequence):
 
     def _network(self, joints, width, outputs):
         left = width - 2 * (self.TAPS - 1)
-        if left < 1:
-            raise ValueError(f"windows must have {2 * self.TAPS - 1} samples or more, got {width}")
         return nn.Sequential(
             nn.Conv1d(2 * joints, self.channels, self.TAPS),
             nn.SiLU(),
@@ -224,18 +207,6 @@ class Convolution(_Sequence):
             nn.Flatten(),
             nn.Linear(self.channels * left, outputs),
         )
-
-    def operations(self):
-        """Operations for one window."""
-        products = units = 0
-        length = self._shape[1]
-        for layer in self.network:
-            if isinstance(layer, nn.Conv1d):
-                length -= self.TAPS - 1
-                products += layer.weight.numel() * length
-                units += self.channels * length
-        products += self.network[-1].weight.numel()
-        return Operations(products + units, products + units, units, units)
 
 
 class Recurrent(_Sequence):
@@ -246,16 +217,6 @@ class Recurrent(_Sequence):
 
     def _network(self, joints, width, outputs):
         return _LastState(2 * joints, self.channels, outputs)
-
-    def operations(self):
-        """Operations for one window, all its samples read."""
-        steps, units = self._shape[1], self.channels
-        gates = self.network.recurrent
-        products = gates.weight_ih_l0.numel() + gates.weight_hh_l0.numel() + 3 * units
-        last = self.network.output.weight.numel()
-        sums = products + 4 * units
-        curved = 3 * units * steps
-        return Operations(steps * products + last, steps * sums + last, curved, curved)
 
 
 class _LastState(nn.Module):

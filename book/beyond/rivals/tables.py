@@ -11,14 +11,10 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.spatial import cKDTree
 
 from beyond.rivals.protocol import OUTSIDE_MARGIN, Rival
-from ddlib._check import integer, number, one_of, shaped
-from ddlib.dynamics import Operations
 from ddlib.identification import SIGN_SPEED
 
 _OVER = {"states": 3, "motions": 2, "configurations": 1}  # quantities of a joint that are axes
-_BEYOND = ("refuse", "edge")
 _QUANTITIES = (("position", "rad"), ("velocity", "rad/s"), ("acceleration", "rad/s^2"))
-_AXES = 8  # most axes of a multilinear table: each doubles the corners of a cell
 
 
 class _TableSize(NamedTuple):
@@ -36,15 +32,12 @@ def table_size(
     width: int = 4,  # bytes of a number
 ) -> _TableSize:
     """Cells and memory of a table with every cell."""
-    for name, value in (("cells", cells), ("axes", axes), ("numbers", numbers), ("width", width)):
-        integer(name, value, 1)
     all_cells = int(cells) ** axes
     return _TableSize(all_cells, all_cells * numbers, all_cells * numbers * width)
 
 
 def _cube_corners(u, cells: int) -> tuple[np.ndarray, np.ndarray]:
     """Nodes around points ``(points, axes)`` of the unit cube, and their multilinear weights."""
-    u = shaped("u", u, "(points, axes)")
     low = np.clip(np.floor(u * cells).astype(int), 0, cells - 1)
     part = u * cells - low
     nodes, weights = np.zeros((len(u), 1, 0), dtype=int), np.ones((len(u), 1))
@@ -63,8 +56,7 @@ def full_table(
     function: Callable, x, limits, cells: int, *, interpolated: bool = True
 ) -> np.ndarray:
     """What a table would answer that has the right torque in every cell, shape (cases, joint)."""
-    low, high = limits = shaped("limits", limits, "(2, joint, 3)")
-    x = shaped("x", x, f"(cases, {limits.shape[1]}, 3)")
+    low, high = limits
     u = _inside(x, low, high, "refuse").reshape(len(x), -1)
     size = (high - low).ravel()
     if not interpolated:
@@ -83,10 +75,7 @@ class Bounded(Rival):
     """A rival with room for a box of states alone; one outside is refused, or taken to the edge."""
 
     def __init__(self, limits=None, beyond: str = "refuse"):
-        self.limits = limits if limits is None else shaped("limits", limits, "(2, joint, 3)")
-        if limits is not None and not (self.limits[0] < self.limits[1]).all():
-            raise ValueError("limits must have least values below the largest ones")
-        self.beyond = one_of("beyond", beyond, _BEYOND)
+        self.limits, self.beyond = limits, beyond
 
     def _bound(self, x) -> np.ndarray:
         """The box, decided by training states; they in units of it."""
@@ -94,11 +83,6 @@ class Bounded(Rival):
             low, high = x.min(0), x.max(0)
             slack = np.where(high > low, OUTSIDE_MARGIN * (high - low), 0.5)
             self.low, self.high = low - slack, high + slack
-        elif self.limits.shape[1:] != x.shape[1:]:
-            raise ValueError(
-                f"limits must be of shape (2, {x.shape[1]}, 3) for these states, "
-                f"got {self.limits.shape}"
-            )
         else:
             self.low, self.high = self.limits
         return self._scaled(x)
@@ -139,11 +123,6 @@ class Nearest(Bounded):
         """Stored numbers: all cases, their torques, and the deviations."""
         return self._tree.data.size + self._torques.size + self.deviation.size
 
-    def operations(self):
-        """Operations to compare a case with all that are kept."""
-        cases, axes = self._tree.data.shape
-        return Operations(axes + cases * axes, cases * (2 * axes - 1))
-
 
 class LocalPlanes(Nearest):
     """All training cases are kept; a plane through the nearest ones gives the torque.
@@ -154,7 +133,7 @@ class LocalPlanes(Nearest):
 
     def __init__(self, neighbours: int = 60):
         super().__init__()
-        self.neighbours = integer("neighbours", neighbours, 2)
+        self.neighbours = neighbours
 
     def _torque(self, x):
         asked = (x / self.deviation).reshape(len(x), -1)
@@ -187,8 +166,7 @@ class CellTable(Bounded):
         beyond: str = "refuse",  # or "edge"
     ):
         super().__init__(limits, beyond)
-        self.cells, self.over = integer("cells", cells, 1), one_of("over", over, tuple(_OVER))
-        self.friction, self.ridge = friction, number("ridge", ridge, 0.0, open_low=True)
+        self.cells, self.over, self.friction, self.ridge = cells, over, friction, ridge
 
     def _fit(self, x, torque):
         place = self._places(self._bound(x))
@@ -230,21 +208,9 @@ class CellTable(Bounded):
         """Whether nothing was recorded in the cells of states ``(cases, joint, 3)``."""
         return self._tree.query(self._places(self._scaled(x)))[0] > 0
 
-    def full(self) -> _TableSize:
-        """What the table takes with all its cells, filled or not."""
-        return table_size(self.cells, self.filled.shape[1], self.coefficients[0].size)
-
     def count(self):
         """Numbers kept."""
         return self.filled.size + self.coefficients.size + self.low.size + self.high.size
-
-    def operations(self):
-        """Arithmetic of one prediction."""
-        axes, (columns, joints) = self.filled.shape[1], self.coefficients.shape[1:]
-        products = joints * (joints + 1) // 2 if self.over == "configurations" else 0
-        signs = joints * (self.over == "configurations" and self.friction)
-        each = (columns - 1) * joints
-        return Operations(axes + products + signs + each, axes + each)
 
 
 class GridTable(Bounded):
@@ -252,20 +218,14 @@ class GridTable(Bounded):
 
     The nodes get the torques that fit all cases best by least squares, with a penalty on their
     distance from the mean torque: `ridge` is so many cases at each node that say it. A node next
-    to which nothing was recorded has the mean. For more axes than `_AXES` `fit` raises ValueError.
+    to which nothing was recorded has the mean.
     """
 
     def __init__(self, cells: int = 4, ridge: float = 1e-3, limits=None, beyond: str = "refuse"):
         super().__init__(limits, beyond)
-        self.cells = integer("cells", cells, 1)
-        self.ridge = number("ridge", ridge, 0.0, open_low=True)
+        self.cells, self.ridge = cells, ridge
 
     def _fit(self, x, torque):
-        if x[0].size > _AXES:
-            raise ValueError(
-                f"data must have at most {_AXES // 3} joints for a multilinear table, "
-                f"got {x.shape[1]}"
-            )
         index, weights = self._corners(self._bound(x))
         self.known, places = np.unique(index, return_inverse=True)
         rows = np.repeat(np.arange(len(x)), weights.shape[1])
@@ -292,22 +252,6 @@ class GridTable(Bounded):
         shape = (self.cells + 1,) * nodes.shape[-1]
         return np.ravel_multi_index(np.moveaxis(nodes, -1, 0), shape), weights
 
-    def empty(self, x) -> np.ndarray:
-        """Whether nothing was recorded next to any corner of the cells of states."""
-        index, _ = self._corners(self._scaled(x))
-        return ~np.isin(index, self.known).any(-1)
-
-    def full(self) -> _TableSize:
-        """What the table takes with all its nodes, known or not."""
-        return table_size(self.cells + 1, self.low.size, self.values.shape[1])
-
     def count(self):
         """Numbers kept."""
         return self.known.size + self.values.size + self.mean.size + 2 * self.low.size
-
-    def operations(self):
-        """Arithmetic of one prediction."""
-        axes, joints = self.low.size, self.values.shape[1]
-        corner = 2**axes
-        weights = 2 * corner - 4  # products, doubling from the second axis on
-        return Operations(axes + weights + corner * joints, 2 * axes + (corner - 1) * joints)

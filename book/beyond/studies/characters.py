@@ -5,7 +5,6 @@ Errors and a predictor's parts are those of the public code: squared errors of b
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -118,15 +117,12 @@ def tested(torque: Callable, drawn: Characters) -> dict:
 
 def _entry(entry: _Entry, split) -> dict:
     training, test = data().split(split)
-    row: dict = {"test": [], "training": [], "seconds": []}
+    row: dict = {"test": [], "training": []}
     for seed in range(SEEDS if entry.random else 1):
-        rival = entry.make(seed)
-        began = time.process_time()
-        rival.fit(states(training))
-        row["seconds"].append(time.process_time() - began)
+        rival = entry.make(seed).fit(states(training))
         row["test"].append(tested(rival._torque, test))
         row["training"].append(tested(rival._torque, training)["torque"])
-    return row | {"count": rival.count(), "operations": list(rival.operations())}
+    return row | {"count": rival.count()}
 
 
 def _dead(rival: LagrangianNetwork, q) -> list[bool]:
@@ -152,9 +148,8 @@ def _as_published() -> dict:
                 row["course"].append(_errors(_parts(rival._torque, asked), test))
 
         rival = LagrangianNetwork(**AS_PUBLISHED, epochs=_MARKS[-1], seed=seed, watch=watch)
-        began = time.process_time()
         rival.fit(cases)
-        row |= {"seconds": time.process_time() - began, "dead at end": _dead(rival, training.q)}
+        row["dead at end"] = _dead(rival, training.q)
         rows.append(row)
     starts = [any(_dead(untrained(seed), training.q)) for seed in range(_STARTS)]
     return {"marks": list(_MARKS), "networks": rows, "dead starts": starts}

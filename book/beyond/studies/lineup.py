@@ -24,8 +24,6 @@ class _Line(NamedTuple):
 
     make: Callable[[object, int], Rival]  # of a size and a seed
     sizes: tuple  # from few to many stored numbers
-    varied: str
-    family: str  # panel of the figures
     days: int = _DAYS
 
 
@@ -66,68 +64,45 @@ def _table(over):
 
 LINES: dict[str, _Line] = {
     # tables
-    "nearest case": _Line(lambda *_: Nearest(beyond="edge"), (1,), "cases", "tables"),
-    "table of states": _Line(_table("states"), (3, 10, 40), "cells an axis", "tables"),
-    "table of configurations": _Line(
-        _table("configurations"), (1, 2, 3, 10), "cells an axis", "tables"
-    ),
-    "multilinear table": _Line(
-        lambda cells, _: GridTable(cells, beyond="edge"), (1, 2), "cells an axis", "tables"
-    ),
-    "CMAC": _Line(
-        lambda width, _: CMAC(width=width, beyond="edge"), (1.0, 0.7, 0.3), "width of a cube",
-        "tables",
-    ),
+    "nearest case": _Line(lambda *_: Nearest(beyond="edge"), (1,)),
+    "table of states": _Line(_table("states"), (3, 10, 40)),
+    "table of configurations": _Line(_table("configurations"), (1, 2, 3, 10)),
+    "multilinear table": _Line(lambda cells, _: GridTable(cells, beyond="edge"), (1, 2)),
+    "CMAC": _Line(lambda width, _: CMAC(width=width, beyond="edge"), (1.0, 0.7, 0.3)),
     # bases
-    "polynomial": _Line(
-        lambda degree, _: Polynomial(degree, ridge=_PENALTY), (1, 2, 3, 5), "degree", "polynomials"
-    ),
-    "Fourier series": _Line(
-        lambda order, _: Fourier(order, ridge=_PENALTY), (1, 2), "order", "polynomials"
-    ),
+    "polynomial": _Line(lambda degree, _: Polynomial(degree, ridge=_PENALTY), (1, 2, 3, 5)),
+    "Fourier series": _Line(lambda order, _: Fourier(order, ridge=_PENALTY), (1, 2)),
     # known structure
-    "identified": _Line(identified, (3, 7), "parameters", "known structure"),
-    "linear filter": _Line(
-        lambda width, _: Linear(width=width), (5, 11, 21), "samples", "known structure"
-    ),
-    "Lagrangian network": _Line(lagrangian, (8, 16), "units a layer", "known structure", _FEWER),
+    "identified": _Line(identified, (3, 7)),
+    "linear filter": _Line(lambda width, _: Linear(width=width), (5, 11, 21)),
+    "Lagrangian network": _Line(lagrangian, (8, 16), _FEWER),
     # Gaussian processes
     "Gaussian process": _Line(
         lambda directions, seed: GaussianProcess(
             directions=directions, seed=seed, **GAUSSIAN_SEARCH
         ),
-        (6, 9, 12), "directions", "Gaussian processes", _FEWER,
+        (6, 9, 12),
+        _FEWER,
     ),
     "process on states": _Line(
-        lambda _, seed: GaussianProcess("states", seed=seed, **GAUSSIAN_SEARCH), (6,), "quantities",
-        "Gaussian processes", _FEWER,
+        lambda _, seed: GaussianProcess("states", seed=seed, **GAUSSIAN_SEARCH), (6,), _FEWER
     ),
     "structure and process": _Line(
-        lambda _, seed: SemiParametric(RIGID + FRICTION, seed=seed, **GAUSSIAN_SEARCH), (6,),
-        "quantities", "Gaussian processes", _FEWER,
+        lambda _, seed: SemiParametric(RIGID + FRICTION, seed=seed, **GAUSSIAN_SEARCH), (6,), _FEWER
     ),
     "random features": _Line(
         lambda features, seed: RandomFeatures(features=features, directions=9, seed=seed),
-        (10, 50, 200), "features", "Gaussian processes", _FEWER,
-    ),
-    # the paper's network
-    REFERENCE: _Line(by_descent, (2, 10), "hidden units", "the paper's network"),
-    "second-order steps": _Line(by_solver, (1, 2, 5, 10), "hidden units", "the paper's network"),
-    "Adam": _Line(
-        lambda hidden, seed: ByAdam(hidden, seed=seed), (2, 10), "hidden units",
-        "the paper's network", _FEWER,
-    ),
-    "on states": _Line(
-        lambda hidden, seed: by_solver(hidden, seed, kind="states"), (2, 5, 10),
-        "hidden units", "the paper's network",
-    ),
-    # other networks
-    "convolutions": _Line(
-        lambda channels, seed: Convolution(channels, seed=seed), (4, 6, 12), "channels",
-        "other networks", _FEWER,
-    ),
-    "recurrent": _Line(
-        lambda units, seed: Recurrent(units, 40, seed=seed), (5, 10), "units", "other networks",
+        (10, 50, 200),
         _FEWER,
     ),
-}  # fmt: skip
+    # the paper's network
+    REFERENCE: _Line(by_descent, (2, 10)),
+    "second-order steps": _Line(by_solver, (1, 2, 5, 10)),
+    "Adam": _Line(lambda hidden, seed: ByAdam(hidden, seed=seed), (2, 10), _FEWER),
+    "on states": _Line(lambda hidden, seed: by_solver(hidden, seed, kind="states"), (2, 5, 10)),
+    # other networks
+    "convolutions": _Line(
+        lambda channels, seed: Convolution(channels, seed=seed), (4, 6, 12), _FEWER
+    ),
+    "recurrent": _Line(lambda units, seed: Recurrent(units, 40, seed=seed), (5, 10), _FEWER),
+}

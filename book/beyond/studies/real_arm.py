@@ -123,10 +123,11 @@ def _structured(data: Windowed, fold, members: int, decay: float) -> list[np.nda
     training, _ = fold
     states, given = data.states, data.current[training]
     known = known_structure(states[training], given, states)
-    left = data.current - known
+    residual = data.current - known
     start = Weights.random(members, data.width, HIDDEN, 6, 6)
     models = [
-        decayed_network(data.x[training], left[training], start[k], decay) for k in range(members)
+        decayed_network(data.x[training], residual[training], start[k], decay)
+        for k in range(members)
     ]
     return [
         np.stack([wrong(known[part] + m.torque(data.x[part]), data, part) for m in models])
@@ -271,11 +272,11 @@ def _processes(subset: int = 120) -> dict:
     states = data.states
     for training, test in data.folds():
         known = known_structure(states[training], data.current[training], states)
-        left = data.current - known
+        residual = data.current - known
         for name, x, y, more in (
             ("windows", data.x, data.current, {"directions": 18}),
             ("states", states, data.current, {}),
-            ("on the rest", states, left, {}),
+            ("on the rest", states, residual, {}),
         ):
             kind = "windows" if name == "windows" else "states"
             process = GaussianProcess(kind, subset=subset, restarts=0, **more)

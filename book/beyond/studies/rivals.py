@@ -100,7 +100,6 @@ def _rivals() -> dict:
                     continue
                 tried = trial(rival, sets[inputs]["training"], sets[inputs])
                 row = rows.setdefault((name, inputs, size), _row(name, inputs, size, tried))
-                row["seconds"].append(tried.seconds)
                 for part, error in tried.rmss.items():
                     row["errors"][part].append(error)
                 affordable = name not in torques or tried.count <= NUMBERS_BUDGET
@@ -114,22 +113,17 @@ def _rivals() -> dict:
         "reference": REFERENCE,
         "budget": NUMBERS_BUDGET,
         "floor": floor,
-        "lines": {
-            name: {"varied": line.varied, "family": line.family} for name, line in LINES.items()
-        },
         "rows": list(rows.values()),
     }
 
 
-def _row(name, inputs, size, found) -> dict:
+def _row(name, inputs, size, tried) -> dict:
     return {
         "rival": name,
         "inputs": inputs,
         "size": size,
-        "count": found.count,
-        "operations": list(found.operations),
-        "seconds": [],
-        "errors": {part: [] for part in found.rmss},
+        "count": tried.count,
+        "errors": {part: [] for part in tried.rmss},
     }
 
 

@@ -180,8 +180,8 @@ def _around(kind: str, days) -> dict:
 def _map(rival: Rival, everywhere: Cases, scale) -> np.ndarray:
     """Error on each trajectory of the square, shape (runs,)."""
     with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):
-        left = (rival.torque(everywhere.x) - everywhere.torque) / scale
-    return np.sqrt((left**2).reshape(POINTS**2, -1).mean(-1))
+        residual = (rival.torque(everywhere.x) - everywhere.torque) / scale
+    return np.sqrt((residual**2).reshape(POINTS**2, -1).mean(-1))
 
 
 def _full() -> dict:
@@ -265,13 +265,13 @@ def _chosen_cmac(day: int, kind: str, sets: dict[str, Cases]) -> dict:
 
     fitted = {width: made(width, training) for width in _WIDTHS}
     same = min(_WIDTHS, key=lambda width: _errors(fitted[width], {"x": again})["x"])
-    left = {
+    left_out = {
         width: np.mean(
             [_errors(made(width, rest), {"x": out})["x"] ** 2 for rest, out in _folds(training)]
         )
         for width in _WIDTHS
     }
-    new = min(_WIDTHS, key=left.get)
+    new = min(_WIDTHS, key=left_out.get)
     return {
         "practised width": same,
         "practised": _errors(fitted[same], sets)["again"],
@@ -294,10 +294,10 @@ def _folds(training: Cases) -> list[tuple[Cases, Cases]]:
 _RIDGES = (0.0, 1e-8, 1e-6, 1e-4, 1e-2)  # on squared coefficients
 
 # Families of functions and their highest degree or order.
-_BASES: dict[str, tuple[Callable[[int], Rival], int]] = {
-    "chebyshev": (Polynomial, 6),
-    "monomials": (lambda order: Polynomial(order, "monomials"), 5),
-    "fourier": (Fourier, 3),
+_BASES: dict[str, tuple[Callable[[int, float], Rival], int]] = {
+    "chebyshev": (lambda order, ridge: Polynomial(order, ridge=ridge), 6),
+    "monomials": (lambda order, ridge: Polynomial(order, "monomials", ridge), 5),
+    "fourier": (lambda order, ridge: Fourier(order, ridge=ridge), 3),
 }
 
 
@@ -309,7 +309,7 @@ def _rivals_bases(days=_DAYS) -> dict:
         sets = {day: _day(day, kind) for day in days}
         for name, (make, highest) in list(_BASES.items())[: None if kind == KINDS[1] else 1]:
             for order in range(1, highest + 1):
-                by_day = [_by_ridge(make(order), sets[day]["training"], sets[day]) for day in days]
+                by_day = [_by_ridge(make, order, sets[day]["training"], sets[day]) for day in days]
                 for k, ridge in enumerate(_RIDGES):
                     rows.append(
                         {"kind": kind, "basis": name, "order": order, "ridge": ridge}
@@ -320,17 +320,10 @@ def _rivals_bases(days=_DAYS) -> dict:
     return {"days": list(days), "floor": list(map(_floor, days)), "rows": rows, "chosen": chosen}
 
 
-def _by_ridge(rival: Rival, training: Cases, sets: dict[str, Cases]) -> list[dict]:
-    """Errors for each penalty; the functions of a set are computed once."""
-    rival.fit(training)
-    fitted = [rival.with_ridge(ridge) for ridge in _RIDGES]
-    rows = [{"count": each.count()} for each in fitted]
-    for name, cases in sets.items():
-        design = np.concatenate([rival.design(x) for x in np.array_split(cases.x, 5)])
-        for row, each in zip(rows, fitted):
-            predicted = each.mean + design @ each.coefficients
-            row[name] = float(rmss(predicted, cases.torque))
-    return rows
+def _by_ridge(make, order: int, training: Cases, sets: dict[str, Cases]) -> list[dict]:
+    """Number of coefficients, and errors, for each penalty."""
+    fitted = [make(order, ridge).fit(training) for ridge in _RIDGES]
+    return [{"count": each.count()} | _errors(each, sets) for each in fitted]
 
 
 def _left_out(make, highest: int, training: Cases) -> dict:
@@ -338,7 +331,7 @@ def _left_out(make, highest: int, training: Cases) -> dict:
     total: dict[tuple, float] = {}
     for rest, out in _folds(training):
         for order in range(1, highest + 1):
-            errors = _by_ridge(make(order), rest, {"out": out})
+            errors = _by_ridge(make, order, rest, {"out": out})
             for ridge, row in zip(_RIDGES, errors):
                 key = order, ridge
                 total[key] = total.get(key, 0.0) + row["out"] ** 2

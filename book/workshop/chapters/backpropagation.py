@@ -8,7 +8,6 @@ from functools import cache
 import numpy as np
 
 from ddlib import paper
-from ddlib._check import finite_array, integer, number, one_of, shaped
 from ddlib.figures import Illustration, families, network_diagram
 from ddlib.learning import Descent, History, TrainingSet, Weights, WindowNetwork, train_ensemble
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS
@@ -16,9 +15,8 @@ from ddlib.tables import quote, scientific, significant, spread
 from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.chapters.widgets.weight import OneWeight as OneWeight
 from workshop.report import committed, results
-from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, median
-from workshop.report.parity import CODINGS, parity, parity_cases, patterns, right
+from workshop.report.parity import parity, parity_cases, patterns, right
 
 
 def monomials(values, coding: str = "bits") -> np.ndarray:
@@ -27,12 +25,9 @@ def monomials(values, coding: str = "bits") -> np.ndarray:
     No variable is squared in it, so it is unique: the Möbius transform for bits, the Walsh-Hadamard
     transform for signs.
     """
-    values, coding = finite_array("values", values), one_of("coding", coding, CODINGS)
+    values = np.asarray(values, dtype=np.int64)
     bits = values.size.bit_length() - 1
-    shaped("values", values, (2 ** integer("bits of values", bits, 1),))
-    if (values != np.round(values)).any():
-        raise ValueError("values must be whole numbers")
-    values_by_bits = values.astype(np.int64).reshape((2,) * bits)  # one axis for each bit
+    values_by_bits = values.reshape((2,) * bits)  # one axis for each bit
     for axis in range(bits):
         off, on = np.split(values_by_bits, 2, axis)
         pair = (off, on - off) if coding == "bits" else (off + on, off - on)
@@ -73,9 +68,6 @@ class _UnitNetwork:
 
     def activity(self, x, gain: float = np.inf) -> np.ndarray:
         """Activities of all units, shape (..., units)."""
-        x = finite_array("x", x, self.inputs)
-        if gain != np.inf:
-            number("gain", gain, 0.0, open_low=True)
         seen = np.concatenate([x, np.zeros((*x.shape[:-1], self.bias.size))], -1)
         for k, (row, bias) in enumerate(zip(self.weights, self.bias)):
             net = seen @ row + bias
@@ -98,14 +90,12 @@ def _build(inputs: int, rows) -> _UnitNetwork:
 
 def _one_layer(bits: int) -> _UnitNetwork:
     """Parity by one hidden layer: unit k is on if k bits or more are on (Rumelhart et al. 1986)."""
-    bits = integer("bits", bits, 1)
     hidden = [(dict.fromkeys(range(bits), 1), 0.5 - k) for k in range(1, bits + 1)]
     return _build(bits, [*hidden, ({bits + k: -((-1) ** k) for k in range(bits)}, 0.5)])
 
 
 def _direct(bits: int) -> _UnitNetwork:
     """Parity by half as many hidden units and direct weights (Hohil, Liu & Smith 1999)."""
-    bits = integer("bits", bits, 1)
     hidden = [(dict.fromkeys(range(bits), 1), 0.5 - 2 * k) for k in range(1, bits // 2 + 1)]
     above = dict.fromkeys(range(bits, bits + len(hidden)), 2)
     return _build(bits, [*hidden, (dict.fromkeys(range(bits), -1) | above, 0.5)])
@@ -116,7 +106,6 @@ def _counter(bits: int) -> _UnitNetwork:
 
     Each sees the inputs and the higher digits, which take their value away; the lowest is parity.
     """
-    bits = integer("bits", bits, 1)
     higher = [2**j for j in range(bits.bit_length() - 1, 0, -1)]
     places, inputs = range(bits, bits + len(higher)), dict.fromkeys(range(bits), 1)
     known = dict(zip(places, (-value for value in higher)))
@@ -127,7 +116,6 @@ def _counter(bits: int) -> _UnitNetwork:
 
 def _tree(bits: int) -> _UnitNetwork:
     """Parity by a tree of two-bit parities, two units each: seven coefficients for a bit more."""
-    bits = integer("bits", bits, 1)
     rows, ends = [], list(range(bits))  # places of what is still to be joined
     while len(ends) > 1:
         joined = []
@@ -183,26 +171,22 @@ def race() -> Illustration:
 
 def _needed() -> tuple[np.ndarray, ...]:
     """Epochs to `_LEVEL` of the networks that learn as in 1988, without and with momentum."""
-    kept = map(results.read("acceleration")["race"].get, ("without", "with"))
-    runs = [History(np.array(run["epochs"]), np.array(run["training"])) for run in kept]
+    races = map(results.read("acceleration")["race"].get, ("without", "with"))
+    runs = [History(np.array(run["epochs"]), np.array(run["training"])) for run in races]
     return tuple(np.minimum(_reach(run), run.epochs[-1]) for run in runs)
 
 
 def _quoted() -> None:
     """The book's numbers in the lesson's prose."""
     plain, quick = map(np.median, _needed())
-    kept = results.read("acceleration")["parity"]
+    on_parity = results.read("acceleration")["parity"]
     quote("backpropagation-weights", Weights.random(1, 21)[0].count(biases=True))
     quote("backpropagation-needed-without", plain)
     quote("backpropagation-needed-with", quick)
-    quote("backpropagation-parity-race", np.median(kept["without"]) / np.median(kept["with"]))
-
-
-def _said() -> None:
-    """What the lesson says of networks in words."""
-    plain, *_, quick = (np.median(run.training[-1]) for run in _raced().values())
-    epochs = map(resampled, _needed())
-    stated("backpropagation-faster", (plain > 3 * quick) & (next(epochs) > 2 * next(epochs)))
+    quote(
+        "backpropagation-parity-race",
+        np.median(on_parity["without"]) / np.median(on_parity["with"]),
+    )
 
 
 def _exercise(number: int, *given) -> Exercise:

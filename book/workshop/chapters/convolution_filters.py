@@ -9,8 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ddlib._check import finite_array, shaped
-from ddlib.analysis import DERIVATIVES, classify, decompose, purest, roughness, shares, upright
+from ddlib.analysis import DERIVATIVES, classify, purest, roughness, shares, upright
 from ddlib.figures.style import (
     COLOURS,
     DASHES,
@@ -31,7 +30,6 @@ from workshop.chapters.widgets import builder
 from workshop.chapters.widgets.builder import FilterBuilder as FilterBuilder
 from workshop.chapters.widgets.fold import FilterFold as FilterFold
 from workshop.report import results
-from workshop.report.evidence.statements import resampled, stated
 from workshop.report.measures import filter_trial as trial
 
 
@@ -83,8 +81,8 @@ def said_and_seen() -> Table:
     """What the report says of its Figures 5-4 to 5-8, and what the rows of `reported` hold."""
     rows = []
     for figure, f in reported().items():
-        each = zip((*DERIVATIVES, "rest"), shares(f))
-        cell = ", ".join(f"{name} {100 * share:.0f}" for name, share in each if share > 0.05)
+        energy = zip((*DERIVATIVES, "rest"), shares(f))
+        cell = ", ".join(f"{name} {100 * share:.0f}" for name, share in energy if share > 0.05)
         rows.append((figure, _REPORT[figure][2], cell, str(classify(f))))
     heads = "figure", "what the report says", "what we see, % of the energy", "name by the rule"
     return Table(heads, rows)
@@ -109,7 +107,7 @@ def puzzles() -> dict[str, np.ndarray]:
     return rows
 
 
-def _named(name: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+def named_in_trial(name: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Share of a name in the hidden filters of the trial: the arm's torques, and each null."""
     row = trial.row(21)
     nulls = {k: trial.share(x, "hidden", [name]) for k, x in trial.matched(row).items()}
@@ -123,40 +121,11 @@ def _quoted() -> None:
     for width in (5, 11, 21):
         quote(f"filters-own-{width}", builder.score(builder.starts()[f"Savitzky–Golay, {width}"]))
     for name in ("velocity", "acceleration"):
-        quote(f"filters-{name}", 100 * _named(name)[0].mean())
+        quote(f"filters-{name}", 100 * named_in_trial(name)[0].mean())
     for name, share in zip(("carried", "carried-bend"), shares(carried())[1:3]):
         quote(f"filters-{name}", 100 * share)
     constant = shares(results.networks(21).weights.hidden_weights)[..., 0]
     quote("filters-constant", 100 * float(np.median(constant)))
-
-
-def _said() -> None:
-    """What the lesson says in words about committed results."""
-    study = results.read("targets")
-    unnamed = {
-        size: resampled(names["not analysable"], np.mean)
-        for size, names in zip(study["initial"], study["by initial"]["real torques"])
-    }
-    stated("filters-start-hides", (unnamed[0.03] < 0.5) & (unnamed[0.3] > 0.5))
-    stated("filters-own-difference", builder.score(builder.starts()["Second difference"]) > 0.9)
-    time = LOG_STEP * (np.arange(21) - 10)
-    answers = {}  # of constant, even and odd part to a speed and to an acceleration
-    for label, f in puzzles().items():
-        parts = decompose(f)
-        taken = np.stack([np.broadcast_to(parts.constant, f.shape), parts.even, parts.odd])
-        answers[label] = np.abs(taken @ np.stack([time, time**2 / 2], -1))
-    mixed, speed, bend = (answers[label] for label in "ABC")
-    stated("filters-odd-to-speed", all(max(each[:2, 0]) < 1e-9 for each in answers.values()))
-    stated("filters-even-to-bend", mixed[1, 1] > 5 * max(mixed[[0, 2], 1]))
-    kinds = speed[2, 0] > 10 * bend[2, 0], bend[1, 1] > 10 * speed[1, 1]
-    stated("filters-one-each", all(kinds))
-    odd = {k: (decompose(f).odd ** 2).sum() / (f**2).sum() for k, f in reported().items()}
-    lies = odd["Figure 5-4"] > 0.8, odd["Figure 5-5"] < 0.2, 0.3 < odd["Figure 5-6"] < 0.7
-    stated("filters-report-lies", all(lies))
-    stated("filters-carried-double", str(classify(carried())) == "velocity + acceleration")
-    rough = {k: roughness(f) for k, f in reported().items()}
-    small = max(rough[f"Figure 5-{k}"] for k in (4, 5, 6))
-    stated("filters-report-rough", min(rough["Figure 5-7"], rough["Figure 5-8"]) > 2 * small)
 
 
 def _exercise(number: int, given, step: float = 0.0) -> Exercise:
@@ -231,14 +200,6 @@ def against_nulls(
     panels: Mapping[str, Mapping[str, Mapping[str, np.ndarray]]], label: str, alt: str
 ) -> Illustration:
     """Shares of filters under the real torques, as bars, and under nulls, a dot for each draw."""
-    if not panels:
-        raise ValueError("panels must hold one panel or more, got none")
-    for groups in panels.values():
-        for name, sets in groups.items():
-            for values in sets.values():
-                shape = finite_array(f"values of {name!r}", values).shape
-                if len(shape) != 1:
-                    raise ValueError(f"values of {name!r} must have shape (draws,), got {shape}")
     classes = list(next(iter(panels.values())))
     rows = -(-len(panels) // 3)
 
@@ -291,9 +252,6 @@ def by_explained(
     values and their mean are shown, of the others the means. Of each mixture in `courses` means,
     and the range of nine tenths of the networks, are shown at equal steps.
     """
-    for name, sets in [*rows.items(), *courses.items()]:
-        for what, values in sets.items():
-            shaped(f"{what!r} of {name!r}", values, "(networks,)")
 
     def draw(figure: Figure):
         left, right = figure.subplots(1, 2)

@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from ddlib._check import finite_array, number
 from ddlib.analysis import linear_residual, share_of_other_joint, share_of_velocity_terms
 from ddlib.dynamics import (
     CMU_DD_ARM_II as ARM,
@@ -149,7 +148,7 @@ def operations(
 
 
 def estimates(
-    found: Mapping[str, Estimate], truth, names: Sequence[str], limit: float
+    by_method: Mapping[str, Estimate], truth, names: Sequence[str], limit: float
 ) -> Illustration:
     """Estimated parameters and their stated confidence, as errors in percent.
 
@@ -157,9 +156,8 @@ def estimates(
     wide as the confidence interval that is stated on average. A number at the right says how often
     the interval held the truth. What lies beyond the axis is marked by an arrow.
     """
-    number("limit", limit, 0.0, open_low=True)
-    rows = list(found.items())
-    shown = {name: [_summary(e, truth, name) for e in found.values()] for name in names}
+    rows = list(by_method.items())
+    shown = {name: [_summary(e, truth, name) for e in by_method.values()] for name in names}
 
     def draw(figure: Figure):
         axes = figure.subplots(1, len(names), sharey=True, squeeze=False)[0]
@@ -194,16 +192,14 @@ def estimates(
 def _summary(estimate: Estimate, truth, name: str):
     """Median, 2.5 % and 97.5 % points, stated half width (in %), share of hits or None."""
     k = list(estimate.names).index(name)
-    true = finite_array("truth", truth, len(estimate.names))[k]
-    error = 100 * (estimate.values[..., k] / true - 1)
-    half = np.mean(100 * estimate.half_width()[..., k] / abs(true))
+    error = 100 * (estimate.values[..., k] / truth[k] - 1)
+    half = np.mean(100 * estimate.half_width()[..., k] / abs(truth[k]))
     share = estimate.covers(truth)[..., k].mean() if error.ndim else None
     return (*np.percentile(error, (50, 2.5, 97.5)), half, share)
 
 
 def arm_sketch(arm: Arm, q) -> Illustration:
     """The arm seen from above at joint angles `q` (rad, shape (2,)), with its angles named."""
-    q = finite_array("q", q, 2)
     (ex, ey), (hx, hy) = arm.forward_kinematics(q)
 
     def draw(figure: Figure):

@@ -74,7 +74,7 @@ class Exercise:
     right : float, array_like, str, Between, MultipleOf, OneOf or callable
         What the answer has to be, `nan` for any number; or tells of an answer whether it is right.
         The page judges all but what only a function can tell.
-    told : str
+    reason : str
         Follows "Right: ", one sentence that teaches.
     slips : iterable of (like `right`, str)
         Answers that come from a known slip, and what follows "Wrong: " to each.
@@ -98,7 +98,7 @@ class Exercise:
 
     kind: str
     right: object
-    told: str
+    reason: str
     slips: Iterable[tuple] = ()
     otherwise: str = "Read the question again."
     tolerance: float = 0.02
@@ -117,7 +117,7 @@ class Exercise:
         slips = [(slip, self.tolerance, f"Wrong: {why}") for slip, why in self.slips]
         wide = [isinstance(slip, (Between, Callable)) for slip, *_ in slips]
         return [
-            (self.right, self.tolerance, f"Right: {self.told}"),
+            (self.right, self.tolerance, f"Right: {self.reason}"),
             *(case for case, late in zip(slips, wide) if not late),
             *_near(self.right, self.tolerance),
             *(case for case, late in zip(slips, wide) if late),
@@ -161,22 +161,24 @@ def judge(mine, exercise: Exercise) -> None:
     try:
         answer = _taken(mine, exercise)
         with np.errstate(all="ignore"):
-            said = _said(answer, exercise)
+            verdict = _verdict(answer, exercise)
     except NotJudged as reason:
         print(reason)
     except Exception as error:  # whatever an answer raises where it is used
         print(f"Not judged: with your answer the check raised {_named(error)}")
     else:
-        print(said + _echo(answer, exercise))
+        print(verdict + _echo(answer, exercise))
 
 
-def _said(answer, exercise: Exercise) -> str:
+def _verdict(answer, exercise: Exercise) -> str:
     """The verdict on an answer of the right kind."""
     for unfit, why in exercise.unless:
         if unfit(answer):
             raise NotJudged(f"Not judged: {why}{_echo(answer, exercise)}")
-    said_if_so = (said for wanted, close, said in exercise.cases() if _is(answer, wanted, close))
-    return next(said_if_so, f"Wrong: {exercise.otherwise}")
+    for wanted, close, verdict in exercise.cases():
+        if _is(answer, wanted, close):
+            return verdict
+    return f"Wrong: {exercise.otherwise}"
 
 
 def _named(error: Exception) -> str:
@@ -280,8 +282,8 @@ def _near(right, tolerance: float) -> list[tuple]:
     """What is close to what is right, if that is numbers or ranges."""
     wide = max(2 * tolerance, min(10 * tolerance, 0.2), 0.02)
     if isinstance(right, OneOf):
-        if all(isinstance(one, Between) for one in right.these):
-            return [near for one in right.these for near in _near(one, tolerance)]
+        if all(isinstance(this, Between) for this in right.these):
+            return [near for this in right.these for near in _near(this, tolerance)]
         return []
     if isinstance(right, Between):
         low, high = (np.asarray(limit, dtype=float) for limit in (right.low, right.high))
@@ -313,7 +315,7 @@ def _is(mine, wanted, tolerance: float) -> bool:
     if isinstance(wanted, str):
         return mine == wanted.lower()
     if isinstance(wanted, OneOf):
-        return any(_is(mine, one, tolerance) for one in wanted.these)
+        return any(_is(mine, this, tolerance) for this in wanted.these)
     if isinstance(wanted, MultipleOf):
         these, mine = _numbers(wanted), np.asarray(mine)
         off = mine - these * (these @ mine) / (these @ these)
@@ -346,18 +348,22 @@ class Waiting:
     def data(self) -> dict | None:
         """What a page needs in order to judge; None if only a run can."""
         right, close, _ = (cases := self.exercise.cases())[0]
-        if not self._kept(right, close):
+        if not self._comparisons(right, close):
             return None
-        kept = [{**one, "said": said} for *wanted, said in cases for one in self._kept(*wanted)]
+        judged = [
+            {**comparison, "said": verdict}
+            for *wanted, verdict in cases
+            for comparison in self._comparisons(*wanted)
+        ]
         words = {"unit": self.exercise.unit, "options": [*map(str.lower, self.exercise.options)]}
         words["unfit"] = f"Not judged: write {_either(self.exercise.options)}."
-        return {"cases": kept, "otherwise": f"Wrong: {self.exercise.otherwise}", **words}
+        return {"cases": judged, "otherwise": f"Wrong: {self.exercise.otherwise}", **words}
 
-    def _kept(self, wanted, close: float) -> list[dict]:
+    def _comparisons(self, wanted, close: float) -> list[dict]:
         if isinstance(wanted, str):
             return [{"word": wanted}]
         if isinstance(wanted, OneOf):
-            return [kept for one in wanted.these for kept in self._kept(one, close)]
+            return [c for this in wanted.these for c in self._comparisons(this, close)]
         if isinstance(wanted, MultipleOf):
             return [{"along": [*map(float, wanted.these)], "close": close}]
         if isinstance(wanted, Between):
@@ -371,14 +377,12 @@ class Waiting:
 
     def _repr_html_(self) -> str:
         words, data = self.RUN, self.data()
-        kept = ""
+        attribute = ""
         if data:
             packed = base64.b64encode(json.dumps(data).encode()).decode()
-            kept, words = (
-                f' data-judge="{packed}"',
-                "Switch on scripts, and this page judges your answer.",
-            )
+            attribute = f' data-judge="{packed}"'
+            words = "Switch on scripts, and this page judges your answer."
         return (
-            f'<div class="exercise-answer"{kept}><span class="lab">{self.WORDS}</span>'
+            f'<div class="exercise-answer"{attribute}><span class="lab">{self.WORDS}</span>'
             f'<span class="page" style="display:none">{words}</span></div>'
         )

@@ -357,8 +357,8 @@ def _geared(gear: float, own_model: bool, extents) -> np.ndarray:
 
 def target_for_models(gear: float = 100.0) -> Measured:
     """What a model of each joint by itself leaves of PD's error: without over behind gears."""
-    left = [_rms(_geared(gear, own, _EXTENTS)) for own in (True, False)]
-    direct, geared = left[0] / left[1]
+    errors = [_rms(_geared(gear, own, _EXTENTS)) for own in (True, False)]
+    direct, geared = errors[0] / errors[1]
     text = f"a model without coupling leaves {100 * direct:.0f} % of PD's error, "
     text += f"{100 * geared:.0f} % behind gears of {gear:g} to 1"
     return Measured(float(direct / geared), text)

@@ -16,7 +16,6 @@ from ddlib.learning import TrainingSet, cases
 from ddlib.metrics import rmss
 from ddlib.setups import (
     JOINT_DAMPING,
-    POSITION_FEEDBACK,
     SETUPS,
     STATE_FEEDBACK,
     WINDOWS,
@@ -26,11 +25,9 @@ from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote, significant
 from workshop.chapters.exercises import Exercise, judging
 from workshop.chapters.hinton_diagrams import before_and_after
-from workshop.chapters.start import values
 from workshop.chapters.window_networks import intervals
-from workshop.report import committed, results
+from workshop.report import committed
 from workshop.report.evidence import claims
-from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, median, rank_correlation
 from workshop.report.measures import filter_trial
 
@@ -57,8 +54,8 @@ def spare_units(width: int, worse: float = 1.1) -> Measured:
     def spare_of(models):
         every = models(width)
         members = [every[k] for k in range(len(every.weights))]
-        without = [ablation(one, windows, torque)[1] for one in members]
-        whole = [rmss(one.torque(windows), torque) for one in members]
+        without = [ablation(member, windows, torque)[1] for member in members]
+        whole = [rmss(member.torque(windows), torque) for member in members]
         return (np.array(without) < worse * np.array(whole)[:, None]).sum(1)
 
     spare, before = committed.both(spare_of)
@@ -165,6 +162,9 @@ def _quoted() -> None:
     for w in (11, 21):
         often = filter_trial.row(w)["real"]["saturated"]
         quote(f"global-trial-saturated-{w}", 100 * np.median(often))
+    unrelated = filter_trial.matched(filter_trial.row(11)).values()
+    least = min(np.median(torques["saturated"]) for torques in unrelated)
+    quote("global-trial-unrelated", 100 * least)
     for key in ("real", "untrained"):
         quote(f"global-cancel-{key}", 100 * np.median(row[key]["cancelled"]))
         quote(f"global-read-{key}", np.median(np.array(row[key]["probe"])[:, [0, 2]]))
@@ -181,45 +181,6 @@ def _read(row: dict, what: str) -> np.ndarray:
     """R² with which a probe reads the velocity or the acceleration from each network's units."""
     columns = {"velocity": [0, 2], "acceleration": [1, 3]}[what]
     return np.array(row["probe"])[:, columns].mean(-1)
-
-
-def stated_beside_linear() -> None:
-    """The filter has less error on trajectory 6 than every median but one."""
-    gap = {key: resampled(each[:, 1] / a[1]) for key, (a, each) in beside_linear().items()}
-    ahead = gap.pop((POSITION_FEEDBACK.name, 21))
-    stated("global-linear-better", np.all([each > 1.1 for each in gap.values()], 0))
-    stated("global-one-ahead", ahead < 0.9)
-
-
-def stated_of_units() -> None:
-    """What the trial says of hidden units that saturate, cancel, and hold the acceleration."""
-    rows = {w: filter_trial.row(w) for w in WINDOWS}
-    often = {
-        w: [resampled(row["real"]["saturated"])]
-        + [np.array(each["saturated"]) for each in filter_trial.matched(row).values()]
-        for w, row in rows.items()
-    }
-    stated("global-short-saturate", np.concatenate([x > 0.5 for x in often[11]]))
-    stated("global-long-do-not", np.concatenate([x < 0.1 for w in (21, 41) for x in often[w]]))
-    real, untrained = (resampled(rows[21][key]["cancelled"]) for key in ("real", "untrained"))
-    stated("global-agree", real < 0.5 * np.median(untrained))
-    large = values(JOINT_DAMPING.name, 0.3, 21, "cancelled")
-    small = values(JOINT_DAMPING.name, JOINT_DAMPING.initial, 21, "cancelled")
-    stated("global-large-start-cancels", resampled(large) > np.maximum(0.6, resampled(small) + 0.2))
-    loud = {key: _read(rows[21][key], "acceleration") for key in ("real", "untrained")}
-    stated("global-loud", resampled(loud["real"]) > np.median(loud["untrained"]) + 0.3)
-
-
-def _said() -> None:
-    """Check what the lesson says in words of the book's networks."""
-    stated_beside_linear()
-    tuned = results.read("tuned")["rivals"]
-    network, linear = (
-        np.array(tuned[name]["errors"]["trajectory 6"])
-        for name in ("network of 1988", "linear filter")
-    )
-    stated("global-tuned-alike", bool((network < linear).any() and (network > linear).any()))
-    stated_of_units()
 
 
 def _exercise(number: int, *given) -> Exercise:

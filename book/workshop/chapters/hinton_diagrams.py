@@ -11,7 +11,7 @@ from matplotlib.gridspec import GridSpec, GridSpecFromSubplotSpec
 from scipy.optimize import linprog
 
 from ddlib import figures, paper
-from ddlib.analysis import classify, mean_gradient, roughness
+from ddlib.analysis import mean_gradient, roughness
 from ddlib.figures.weights import hinton_on
 from ddlib.learning import INITIAL, TrainingSet, Weights, cases, train_ensemble
 from ddlib.setups import JOINT_DAMPING, SETUPS, STATE_FEEDBACK, WINDOWS, split
@@ -19,18 +19,9 @@ from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, quote, scientific, significant
 from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.chapters.index import both
+from workshop.chapters.start import named
 from workshop.report import committed, results
-from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured
-
-
-def _trained(members: int, initial: float = INITIAL) -> tuple[Weights, Weights]:
-    """Random starts of a size, and what training as in the lesson makes of them."""
-    data = TrainingSet.from_recording(JOINT_DAMPING.record()[:5], 21)
-    how = {"momentum": 0.98, "warm_up": 500, "epochs": 4000, "progress": False}
-    start = Weights.random(members, 21, initial=initial)
-    return start, train_ensemble(start, data, **how)[0].weights
-
 
 NOTE = (
     "Press a row, or move to the diagram and use the arrow keys. Each grey blob is a unit: the two "
@@ -43,8 +34,10 @@ NOTE = (
 
 def before_and_after() -> tuple[Weights, Weights]:
     """The network that the lesson trains with *Change this* as it is: its start, and trained."""
-    start, trained = _trained(1)
-    return start[0], trained[0]
+    data = TrainingSet.from_recording(JOINT_DAMPING.record()[:5], 21)
+    how = {"momentum": 0.98, "warm_up": 500, "epochs": 4000, "progress": False}
+    start = Weights.random(1, 21, initial=INITIAL)
+    return start[0], train_ensemble(start, data, **how)[0].weights[0]
 
 
 def printed_windows() -> figures.Illustration:
@@ -71,22 +64,20 @@ def printed_windows() -> figures.Illustration:
     return figures.illustrate(draw, alt, 7.0, 8.6)
 
 
-def _largest() -> dict[str, dict[int, np.ndarray]]:
-    """Largest weights of 25 networks, by reading and window."""
-    cells = results.read("table-4-1")["setups"]
-    return {s: {w: np.array(cells[s][str(w)]["largest weight"]) for w in WINDOWS} for s in SETUPS}
-
-
 def largest_weights() -> Table:
     """Largest weights, printed and ours: medians of 25 networks for each reading."""
-    ours = {s: {w: np.median(x) for w, x in each.items()} for s, each in _largest().items()}
+    cells = results.read("table-4-1")["setups"]
+    ours = {
+        name: {w: np.median(cells[name][str(w)]["largest weight"]) for w in WINDOWS}
+        for name in SETUPS
+    }
     rows = [
-        (w, f"{paper.LARGEST_WEIGHT[w]:g}", *(significant(each[w]) for each in ours.values()))
+        (w, f"{paper.LARGEST_WEIGHT[w]:g}", *(significant(sizes[w]) for sizes in ours.values()))
         for w in WINDOWS
     ]
     off = {
-        s: max(np.exp(abs(np.log(each[w] / paper.LARGEST_WEIGHT[w]))) for w in WINDOWS)
-        for s, each in ours.items()
+        s: max(np.exp(abs(np.log(sizes[w] / paper.LARGEST_WEIGHT[w]))) for w in WINDOWS)
+        for s, sizes in ours.items()
     }
     last = "worst of the three, off by a factor of"
     rows.append((last, "", *(significant(x, 2) for x in off.values())))
@@ -119,8 +110,8 @@ def notch() -> figures.Illustration:
     def draw(figure):
         axes = figure.subplots(1, 2)
         for joint, axis in enumerate(axes):
-            for one in _gradients()[:, joint]:
-                axis.plot(time, one, color=figures.COLOURS[0], lw=0.6, alpha=0.5)
+            for gradient in _gradients()[:, joint]:
+                axis.plot(time, gradient, color=figures.COLOURS[0], lw=0.6, alpha=0.5)
             median = np.median(_gradients()[:, joint], 0)
             axis.plot(time[19:22], median[19:22], "o-", color=figures.COLOURS[1], ms=5, lw=1.5)
             axis.set(title=figures.JOINTS[joint], xlabel="time from the window's centre, ms")
@@ -135,42 +126,8 @@ def _quoted() -> None:
     for joint, dot, gain in zip(figures.JOINTS, _dots().T, JOINT_DAMPING.controller.kp):
         quote(f"hinton-dot-{joint}", -np.median(dot))
         quote(f"hinton-gain-{joint}", gain)
-
-
-def _said() -> None:
-    """What the lesson says of smooth and rough parts, in eight networks of each start."""
-    smooth, named = [], {}
-    for initial in (INITIAL, 10 * INITIAL):
-        start, trained = _trained(8, initial)
-        before, after = map(_rows, (start, trained))
-        added = roughness(after - before)
-        smooth.append(resampled(np.median(added, (1, 2))) < 0.05)
-        share = (classify(trained.hidden_weights) != "not analysable").mean((1, 2))
-        named[initial] = resampled(share, np.mean)
-        if initial == INITIAL:
-            stated("hinton-every-row", resampled((added < 0.2).mean((1, 2)), np.mean) > 0.9)
-            rough = roughness(after)[:, 2:] > 0.3
-            stated("hinton-look-rough", resampled(rough.mean((1, 2)), np.mean) > 0.15)
-        else:
-            second = [np.diff(x, 2).reshape(8, -1) for x in (before, after)]
-            like = resampled([np.corrcoef(*x)[0, 1] for x in zip(*second)])
-            stated("hinton-rough-start", like > 0.9)
-    stated("hinton-added-smooth", np.all(smooth, 0))
-    small, large = named.values()
-    stated("hinton-small-shows", (small > 0.5) & (large < 0.5))
-    falls = []
-    for each in _largest().values():
-        size = [resampled(each[w]) for w in WINDOWS]
-        falls.append((size[0] > size[1]) & (size[1] > size[2]))
-    stated("hinton-falls", np.all(falls, 0))
-    gains = JOINT_DAMPING.controller.kp
-    near = [np.abs(resampled(-dot / gain) - 1) < 0.1 for dot, gain in zip(_dots().T, gains)]
-    stated("hinton-dot", np.all(near, 0))
-
-
-def _rows(weights: Weights) -> np.ndarray:
-    """All rows of networks, those of the outputs first: (network, unit, joint, sample)."""
-    return np.concatenate([weights.direct_weights, weights.hidden_weights], 1)
+    for name, size in (("small", INITIAL), ("large", 10 * INITIAL)):
+        quote(f"hinton-named-{name}", 100 * named(JOINT_DAMPING.name, size).mean())
 
 
 def _exercise(number: int, given) -> Exercise:

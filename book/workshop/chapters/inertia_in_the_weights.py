@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
-from itertools import product
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -16,13 +14,12 @@ from ddlib.learning import TorqueModel, Weights, cases
 from ddlib.setups import INITIAL, JOINT_DAMPING, split
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote, scientific
-from workshop.chapters import excitation, start
+from workshop.chapters import excitation
 from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.chapters.index import both
 from workshop.chapters.whose_filters import given, of_torques, trained
 from workshop.chapters.widgets.weigh import WeighTheArm as WeighTheArm
 from workshop.report import committed, results
-from workshop.report.evidence.statements import resampled, stated
 from workshop.report.measures import filter_trial as trial
 from workshop.report.studies.nulls import TRIAL
 
@@ -89,56 +86,31 @@ def _carried() -> int:
 
 def paths_beside() -> Illustration:
     """Inertia and damping of each path of the landing page's network, and their sum."""
-    each, carried = paths(), _carried()
-    names = ["direct", *(f"unit {k}" for k in range(1, len(each))), "all"]
+    by_path, carried = paths(), _carried()
+    names = ["direct", *(f"unit {k}" for k in range(1, len(by_path))), "all"]
     names[carried] += ", the row"
-    colours = [COLOURS[1] if k == carried else COLOURS[0] for k in range(len(each))]
+    colours = [COLOURS[1] if k == carried else COLOURS[0] for k in range(len(by_path))]
     friction = JOINT_DAMPING.effects.friction[0].coefficient[0]
     panels = {"inertia, kg m²": (2, _arm()), "damping, N m s/rad": (1, friction)}
 
     def draw(figure: Figure):
         for axis, (label, (k, arm)) in zip(figure.subplots(1, 2, sharey=True), panels.items()):
-            axis.barh(names[:-1], each[:, k], color=colours)
-            axis.barh(names[-1:], each[:, k].sum(), color=INK)
-            axis.plot([arm] * 2, [len(each) - 0.6, len(each) + 0.6], color=COLOURS[2], lw=3)
+            axis.barh(names[:-1], by_path[:, k], color=colours)
+            axis.barh(names[-1:], by_path[:, k].sum(), color=INK)
+            axis.plot([arm] * 2, [len(by_path) - 0.6, len(by_path) + 0.6], color=COLOURS[2], lw=3)
             axis.axvline(0, color=INK, lw=0.8)
             axis.grid(visible=False, axis="y")
             axis.set(xlabel=label, ylim=(len(names) - 0.4, -0.6))
 
     alt = (
-        f"Bars for {len(each)} paths, of both signs, and for their sum: inertia "
-        f"{each[:, 2].sum():.1f} kg m², damping {each[:, 1].sum():.0f} N m s/rad."
+        f"Bars for {len(by_path)} paths, of both signs, and for their sum: inertia "
+        f"{by_path[:, 2].sum():.1f} kg m², damping {by_path[:, 1].sum():.0f} N m s/rad."
     )
     return illustrate(draw, alt, 7.0, 3.2, narrow_height=6.0)
 
 
 def _arm() -> float:
     return float(trial.arm_gains()[0, 0, 2])
-
-
-SWING = 1.7
-"""Frequency at which the walk's arm swings about its path, Hz."""
-
-
-def inertia_at(f, frequency: float) -> float:
-    """Inertia that a filter has for a sine of a frequency (Hz), kg m²."""
-    omega = 2 * np.pi * frequency
-    x = LOG_STEP * (np.arange(len(f)) - len(f) // 2)
-    return (f.sum() - f @ np.cos(omega * x)) / omega**2
-
-
-def fitted() -> dict[tuple[bool, bool], np.ndarray]:
-    """The shoulder's filter by least squares, with and without dry friction and encoder."""
-    filters, effects = {}, JOINT_DAMPING.effects
-    for dry, stepped in product((True, False), repeat=2):
-        friction = effects.friction if dry else effects.friction[:1]  # viscous alone
-        present = replace(effects, friction=friction, encoder=effects.encoder if stepped else ())
-        runs = split(replace(JOINT_DAMPING, effects=present).record())[0]
-        windows, torque = cases(runs, _WIDTH)
-        flat = windows.reshape(len(windows), -1)
-        fit, *_ = np.linalg.lstsq(flat - flat.mean(0), torque[:, 0], rcond=None)
-        filters[dry, stepped] = fit[:_WIDTH]
-    return filters
 
 
 def _quoted() -> None:
@@ -159,59 +131,6 @@ def _quoted() -> None:
     for name, values in {"row": row, "row-network": whole}.items():
         quote(f"inertia-{name}", values[2])
         quote(f"inertia-{name}-damping", values[1])
-
-
-def _said() -> None:
-    """What the lesson says in words about committed results, and of networks trained as in it."""
-    row, arm = trial.row(_WIDTH), _arm()
-    inertia = [
-        np.array(x["gains"])[:, 0, 0, 2] for x in (row["real"], *trial.matched(row).values())
-    ]
-    stated("inertia-apart", min(inertia[0]) > max(map(max, inertia[1:])))
-    stated("inertia-near", np.abs(resampled(inertia[0]) / arm - 1) < 0.25)
-    places = list(trial.ENTRIES["inertia"].values())
-    kinds = row["real"], row["nulls"]["shifted"], row["nulls"]["phases"]
-    gains = (np.moveaxis(np.array(x["gains"]), 0, -1) for x in kinds)
-    real, *nulls = (np.transpose([each[at] for at in places]) for each in gains)
-    true = np.array([trial.arm_gains()[at] for at in places])
-    stated("inertia-no-null", max(trial.near_by_chance(x, real, true) for x in nulls) < 0.06)
-    lost, back = (
-        np.array(excitation.cell(drive, 1.0)["descent"]["M11"])[-1]
-        for drive in ("state feedback", "state feedback, two sines")
-    )
-    stated("inertia-swing-back", resampled(lost) < resampled(back, seed=1) / 4)
-    cut = excitation.cell("state feedback", 1.0)
-    stated("inertia-swing-lost", resampled(lost) < cut["arm"] / 4)
-    whole = excitation.cell("state feedback")
-    errors = [resampled(c["descent"]["error"][-1], seed=k) for k, c in enumerate((cut, whole))]
-    stated("inertia-error-low", errors[0] < errors[1])
-    stated("inertia-half-foretold", excitation.half_foretold().replicates < 3)
-    every = excitation.results.read("excitation")["cells"]
-    reached = [np.isfinite(excitation.half_measured(each)).all() for each in every]
-    stated("inertia-half-but-one", sum(reached) == len(every) - 1)
-    by_torques, known = gradients()
-    x = LOG_STEP * (np.arange(_WIDTH) - _WIDTH // 2)
-    mass = {name: (g @ x**2 / 2)[0, 0] for name, g in by_torques.items()}
-    near = [abs(mass[n] / known[n][0, 0] - 1) < 0.3 for n in mass if "shifted" not in n]
-    stated("inertia-of-either-arm", all(near))
-    shares = start.shares_beside(TRIAL.name, INITIAL, "velocity")
-    unrelated = min(shares[kind].mean() for kind in ("shifted", "phases"))
-    stated("inertia-velocity-any", resampled(shares["real"], np.mean) < unrelated)
-    clear = [start.p_more(TRIAL.name, size, "acceleration") for size in (0.03, 0.3)]
-    stated("inertia-acceleration-more", max(clear) < 0.06)
-    stated("inertia-least-squares", near[-1])
-    run = np.array(trial.matched(row)["other run"]["gains"])[:, 0, 0, 2]
-    stated("inertia-run-on-line", np.abs(run / arm - 1).min() < 0.02)
-    over = {k: np.array([inertia_at(f, hz) for hz in (0.2, SWING, 3.5)]) / arm - 1
-            for k, f in fitted().items()}  # fmt: skip
-    stated("inertia-right-at-swing", all(abs(each[1]) < 0.06 for each in over.values()))
-    impaired = [each for k, each in over.items() if any(k)]
-    stated("inertia-slow-too-much", all(each[0] > 0.04 and each[2] < -0.1 for each in impaired))
-    stated("inertia-level", np.abs(over[False, False]).max() < 0.03)
-    each, whole = paths(), paths().sum(0)
-    stated("inertia-paths-cancel", (np.abs(each).sum(0) > 2 * np.abs(whole))[1:].all())
-    stated("inertia-row-faster", each[_carried(), 1] > 2 * whole[1])
-    stated("inertia-no-path", not (np.abs(each[:, 2] / arm - 1) < 0.05).any())
 
 
 def _exercise(number: int, *given) -> Exercise:

@@ -23,10 +23,9 @@ from ddlib.setups import (
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, quote, significant
 from workshop.report import results
-from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, mean, median
 from workshop.report.studies.nulls import TRIAL
-from workshop.report.studies.start import RANGES, SOLVED, agreement, chosen
+from workshop.report.studies.random_starts import RANGES, SOLVED, agreement, chosen
 
 PRINTED = "0 to 1"
 """Range of the inputs that the report prints."""
@@ -44,10 +43,10 @@ def cells(method: str = "descent", scaling: str = PRINTED) -> dict:
 
 def values(reading: str, size: float, width: int, *path: str, **where) -> np.ndarray:
     """What a cell keeps of its networks, shape (networks,)."""
-    kept = cells(**where)[reading][str(size)][str(width)]
+    cell = cells(**where)[reading][str(size)][str(width)]
     for name in path:
-        kept = kept[name]
-    return np.array(kept, float)
+        cell = cell[name]
+    return np.array(cell, float)
 
 
 def named(reading: str, size: float, width: int = 21, layer: str = "hidden", **where):
@@ -136,8 +135,8 @@ def by_range() -> figures.Illustration:
         axes = figure.subplots(1, len(_PANELS))
         for axis, (title, measure) in zip(axes, _PANELS.items()):
             for k, reading in enumerate(SETUPS):
-                each = [np.quantile(measure(reading, s), (0.25, 0.5, 0.75)) for s in RANGES]
-                low, middle, high = np.transpose(each)
+                quartiles = [np.quantile(measure(reading, s), (0.25, 0.5, 0.75)) for s in RANGES]
+                low, middle, high = np.transpose(quartiles)
                 look = {"color": figures.COLOURS[k], "label": reading, "marker": "o", "ms": 3}
                 axis.fill_between(RANGES, low, high, color=look["color"], alpha=0.15, lw=0)
                 axis.plot(RANGES, middle, ls=figures.DASHES[k], **look)
@@ -235,8 +234,8 @@ def beside_unrelated() -> figures.Illustration:
     medians = []
     for reading in SETUPS:
         for size in sizes:
-            found = shares_beside(reading, size, "acceleration")
-            each = ", ".join(f"{_KINDS[k]} {100 * np.median(x):.0f} %" for k, x in found.items())
+            shares = shares_beside(reading, size, "acceleration")
+            each = ", ".join(f"{_KINDS[k]} {100 * np.median(x):.0f} %" for k, x in shares.items())
             medians.append(f"{reading}, ±{size:g}: {each}")
     alt = (
         "Shares of hidden filters named acceleration and velocity at window 21, medians and the "
@@ -311,13 +310,13 @@ def errors_table() -> Table:
     rows = []
     for reading in SETUPS:
         for size in RANGES:
-            each = [
+            medians = [
                 f"{np.median(values(reading, size, w, 'training')):.3f} / "
                 f"{np.median(values(reading, size, w, 'test')):.3f}"
                 for w in WINDOWS
             ]
             wait = np.median(values(reading, size, 21, "until half"))
-            rows.append((reading, f"±{size:g}", *each, f"{wait:,.0f}"))
+            rows.append((reading, f"±{size:g}", *medians, f"{wait:,.0f}"))
     heads = (f"window {w}, training / test" for w in WINDOWS)
     return Table(("reading", "start", *heads, "epochs until 0.5"), rows)
 
@@ -403,7 +402,7 @@ def velocity_beyond_unrelated() -> Measured:
 
 
 def _by_reading(texts) -> str:
-    return "; ".join(f"{reading} {one}" for reading, one in zip(SETUPS, texts))
+    return "; ".join(f"{reading} {text}" for reading, text in zip(SETUPS, texts))
 
 
 def _quoted() -> None:
@@ -436,43 +435,3 @@ def _quoted() -> None:
     null = np.concatenate([*inertia["shifted"], *inertia["phases"]])
     quote("start-inertia-null", float(np.median(null)))
     quote("start-inertia-arm", results.read("excitation")["cells"][0]["arm"])
-
-
-def _said() -> None:
-    """What the page says in words, by the names that `bound_words.yml` gives it."""
-    best, scores = chosen(cells())
-    stated("start-is-the-books", best == INITIAL)
-    stated("start-old-worse", scores[0.3] < scores[best] - 1)
-    never = [agreement(cells()[r][str(s)])["saturated at 21"] < 0.5 for r in SETUPS for s in RANGES]
-    stated("start-never-saturated", all(never))
-    alone = [agreement(cells()[r]["0.03"])["largest weights"] for r in SETUPS]
-    stated(
-        "start-largest-alone",
-        [share > 0.5 for share in alone] == [r == STATE_FEEDBACK.name for r in SETUPS],
-    )
-    stated("start-names", more_names().replicates > 0)
-    stated("start-turns", turned().replicates > 0)
-    turns = [
-        [resampled(values(r, s, 21, "turn"), seed=k) for k, s in enumerate((1.0, 0.3, INITIAL))]
-        for r in SETUPS
-    ]
-    stated("start-between", np.all([(a < b) & (b < c) for a, b, c in turns], 0))
-    stated("start-kernel", kernel_moved().replicates < 0)
-    rough = [
-        resampled(values(r, 0.3, 21, "hidden", "roughness"))
-        > resampled(values(r, INITIAL, 21, "hidden", "roughness"), seed=1)
-        for r in SETUPS
-    ]
-    stated("start-rougher", np.all(rough, 0))
-    waits = {
-        r: resampled(values(r, INITIAL, 21, "until half"))
-        / resampled(values(r, 0.3, 21, "until half"), seed=1)
-        for r in SETUPS
-    }
-    stated("start-waits", waits.pop(STATE_FEEDBACK.name) > 1.2)
-    stated("start-waits-no-longer", np.all([longer < 1.2 for longer in waits.values()], 0))
-    this, other = results.read("excitation")["cells"][0]["arm"], other_inertia()
-    number = {name: resampled(inertia) for name, (_, inertia) in other_torques().items()}
-    stated("start-number-this", np.abs(number["own"] - this) < np.abs(number["own"] - other))
-    number = number["another arm"]
-    stated("start-number-other", np.abs(number - other) < np.abs(number - this))

@@ -12,7 +12,6 @@ from scipy.spatial import Delaunay
 from scipy.stats import binom
 
 from ddlib import paper
-from ddlib._check import number, shaped
 from ddlib.analysis import cells_reached, log10_reachable_share, used_dimensions
 from ddlib.control import proportional
 from ddlib.figures.style import COLOURS, FAINT, INK, Illustration, illustrate
@@ -48,10 +47,6 @@ _TRAINING = len(TRAINING_TRAJECTORIES)
 
 def reached(states: Mapping[str, np.ndarray], radius: float) -> Illustration:
     """Where recordings lie in the cube of states: shoulder against elbow, three planes."""
-    number("radius", radius, 0.0, open_low=True)
-    checked = {n: shaped(f"states[{n!r}]", x, "(runs, time, 6)") for n, x in states.items()}
-    if not checked:
-        raise ValueError("states must hold one set or more, got none")
     units = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s²"}
     edge = 1.15 * radius
 
@@ -61,7 +56,7 @@ def reached(states: Mapping[str, np.ndarray], radius: float) -> Illustration:
             box = Rectangle((-radius, -radius), 2 * radius, 2 * radius, fill=False)
             box.set(edgecolor=INK, lw=1.0)
             axis.add_patch(box)
-            for j, (name, x) in enumerate(checked.items()):
+            for j, (name, x) in enumerate(states.items()):
                 for run, line in enumerate(x[..., 2 * k : 2 * k + 2]):
                     label = name if run == 0 else None
                     axis.plot(*line.T, color=COLOURS[j], lw=0.6 + 0.5 * j, label=label)
@@ -74,7 +69,7 @@ def reached(states: Mapping[str, np.ndarray], radius: float) -> Illustration:
     largest = ", ".join(
         f"{name}: {np.abs(x[..., :2]).max():.1f} rad, {np.abs(x[..., 2:4]).max():.1f} rad/s, "
         f"{np.abs(x[..., 4:]).max():.1f} rad/s²"
-        for name, x in checked.items()
+        for name, x in states.items()
     )
     alt = (
         "Three squares, shoulder against elbow, for position, velocity and acceleration, each "
@@ -86,16 +81,13 @@ def reached(states: Mapping[str, np.ndarray], radius: float) -> Illustration:
 
 def rounding(t, steps, estimates: Mapping[str, np.ndarray]) -> Illustration:
     """Readings of an encoder sample by sample, and accelerations computed from them."""
-    t = shaped("t", t, "(time,)")
-    steps = shaped("steps", steps, t.shape)
-    drawn = {name: shaped(f"estimates[{name!r}]", x, t.shape) for name, x in estimates.items()}
 
     def draw(figure: Figure):
         top, bottom = figure.subplots(2, 1, sharex=True)
         top.step(t, steps, where="mid", color=FAINT, lw=0.9)
         top.plot(t, steps, ".", color=COLOURS[0], ms=5)
         top.set_ylabel("angle, encoder steps")
-        for k, (name, x) in enumerate(drawn.items()):
+        for k, (name, x) in enumerate(estimates.items()):
             look = dict(ls="", marker=".", ms=5) if k == 0 else dict(lw=2)
             bottom.plot(t, x, color=COLOURS[k + 1], label=name, **look)
             if k == 0:
@@ -103,7 +95,7 @@ def rounding(t, steps, estimates: Mapping[str, np.ndarray]) -> Illustration:
         bottom.set(xlabel="time, s", ylabel="acceleration, rad/s²")
         figure.legend(*bottom.get_legend_handles_labels(), loc="outside upper left", ncols=3)
 
-    sizes = ", ".join(f"{name} {np.std(x):.3f}" for name, x in drawn.items())
+    sizes = ", ".join(f"{name} {np.std(x):.3f}" for name, x in estimates.items())
     alt = (
         f"Above, readings that change by whole steps, {int(np.ptp(steps))} in all; below, "
         f"accelerations computed from them, with standard deviations in rad/s²: {sizes}."
@@ -113,17 +105,11 @@ def rounding(t, steps, estimates: Mapping[str, np.ndarray]) -> Illustration:
 
 def tied(panels: Mapping[str, Mapping[str, np.ndarray]]) -> Illustration:
     """Acceleration against position: a line where one follows from the other, a cloud where not."""
-    checked = {
-        title: {n: shaped(f"points of {n!r}", x, "(runs, samples, 2)") for n, x in named.items()}
-        for title, named in panels.items()
-    }
-    look = {n: k for k, n in enumerate(dict.fromkeys(n for p in checked.values() for n in p))}
-    if not look:
-        raise ValueError("panels must hold points, got none")
+    look = {n: k for k, n in enumerate(dict.fromkeys(n for p in panels.values() for n in p))}
 
     def draw(figure: Figure):
-        axes = figure.subplots(1, len(checked), squeeze=False, sharex=True)[0]
-        for axis, (title, named) in zip(axes, checked.items()):
+        axes = figure.subplots(1, len(panels), squeeze=False, sharex=True)[0]
+        for axis, (title, named) in zip(axes, panels.items()):
             for place, (name, points) in enumerate(named.items()):
                 q, qdd = np.rad2deg(points[..., 0]), points[..., 1]
                 if place:
@@ -138,13 +124,13 @@ def tied(panels: Mapping[str, Mapping[str, np.ndarray]]) -> Illustration:
         handles, labels = axes[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside upper left", ncols=3, markerscale=3)
 
-    def told(points):
+    def correlation(points):
         q, qdd = points[..., 0].ravel(), points[..., 1].ravel()
         return f"correlation {np.corrcoef(q, qdd)[0, 1]:.2f}"
 
     parts = [
-        f"{title}: " + ", ".join(f"{name}, {told(points)}" for name, points in named.items())
-        for title, named in checked.items()
+        f"{title}: " + ", ".join(f"{name}, {correlation(points)}" for name, points in named.items())
+        for title, named in panels.items()
     ]
     alt = f"Acceleration against position. {'; '.join(parts)}."
     return illustrate(draw, alt, 7.0, 3.0)
@@ -179,10 +165,17 @@ def _quoted() -> None:
 def _exercise(number: int, motion=None) -> Exercise:
     """An exercise of the lesson."""
 
-    def told(share):
-        q, qd, qdd = (x[0, :, 0] for x in motion([[45.0, 45.0]], share))
+    def states(share):
+        return (x[0, :, 0] for x in motion([[45.0, 45.0]], share))
+
+    def speed(share):
+        _, qd, _ = states(share)
+        return np.abs(qd).max()
+
+    def explained(share):
+        q, qd, qdd = states(share)
         moving = qd != 0
-        return np.corrcoef(q[moving], qdd[moving])[0, 1] ** 2, np.abs(qd).max()
+        return np.corrcoef(q[moving], qdd[moving])[0, 1] ** 2
 
     if number == 1:
         slip = (
@@ -200,9 +193,10 @@ def _exercise(number: int, motion=None) -> Exercise:
             "number", outside, "the test lies outside more often than not.", (), hint, tolerance=0.1
         )
     else:
-        known, fastest = told, 1.2 * told(0.0)[1] * (1 + 1e-9)  # 20 % is still right
-        slow = fitting(lambda x: known(x)[1] <= fastest, shares := np.arange(-500, 501) / 500)
-        right = fitting(lambda x: known(x)[0] < 0.1 and known(x)[1] <= fastest, shares)
+        fastest = 1.2 * speed(0.0) * (1 + 1e-9)  # 20 % is still right
+        shares = np.arange(-500, 501) / 500
+        slow = fitting(lambda x: speed(x) <= fastest, shares)
+        right = fitting(lambda x: explained(x) < 0.1 and speed(x) <= fastest, shares)
         slips = [
             (slow, "you could still predict too much of the acceleration from the position."),
             (Between(-np.inf), "the arm would have to move too fast."),

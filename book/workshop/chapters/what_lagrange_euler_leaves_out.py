@@ -17,7 +17,6 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy.optimize import brentq
 
-from ddlib._check import finite_array
 from ddlib.analysis import savitzky_golay
 from ddlib.control import difference, end_slope, late_poles, linear, noise_gain, pd
 from ddlib.control.velocity import EstimatedVelocity
@@ -77,9 +76,6 @@ def side_by_side(
 
 def ranking(sizes: Mapping[str, np.ndarray]) -> Illustration:
     """Torques as bars on a logarithmic axis, largest first, one bar for each joint."""
-    for name, size in sizes.items():
-        if (finite_array(f"sizes[{name!r}]", size, 2) <= 0).any():
-            raise ValueError(f"sizes must be positive, got {size} for {name!r}")
     order = sorted(sizes, key=lambda name: sizes[name][0], reverse=True)
     values = np.array([sizes[name] for name in order])
     places = np.arange(len(order))
@@ -139,12 +135,12 @@ def _left(runs: int | None, **effects) -> np.ndarray:
     return residual_torque(_SETUP.arm, run)[..., run.motion, :]
 
 
-def _shares(left) -> tuple[np.ndarray, str]:
+def _shares(torque_left) -> tuple[np.ndarray, str]:
     """RMS over the rigid body's as driven; of the first run a text that has the reference's too."""
     run = _ideal()
     reference = pick_and_place(APPENDIX_I[TEST_TRAJECTORY - 1], run.t[run.motion])
     driven, asked = (
-        rms(left) / rms(torque)
+        rms(torque_left) / rms(torque)
         for torque in (run.tau_true[run.motion], _SETUP.arm.inverse_dynamics(*reference))
     )
     (shoulder, elbow), (less, least) = (100 * x.reshape(-1, 2)[0] for x in (driven, asked))
@@ -198,7 +194,7 @@ def _quoted() -> None:
     """Quote what the lesson says of the book's arm."""
     sizes, switches = torques_left(), RealArmSwitches()
     quote("left-rings", sizes["flexible shaft"][0])
-    rubbing = rms(sum(_left(None, friction=(one,)) for one in _SETUP.effects.friction))
+    rubbing = rms(sum(_left(None, friction=(part,)) for part in _SETUP.effects.friction))
     for name, whole in {"driven": "rigid body", "asked": "rigid body, reference"}.items():
         quote(f"left-friction-{name}", 100 * (rubbing / sizes[whole])[0])
     for name in ("friction", "quantisation", "saturation"):
@@ -302,13 +298,13 @@ def snap() -> Measured:
     reference = Trajectory(-sine, -omega * cosine, omega**2 * sine)
     options = dict(effects=Effects(transmission=(_SHAFT,)), log_every=1)
     run = follow(_SETUP.arm, _SETUP.controller, reference, t, **options)
-    left = rms(residual_torque(_SETUP.arm, run)[t[:-1] >= 0])[0]
+    residual = rms(residual_torque(_SETUP.arm, run)[t[:-1] >= 0])[0]
     noise = _SETUP.effects.torque_sensor[0].std[0]
     modes = _SHAFT.mode_frequencies(_SETUP.arm, [0.0, 0.0]) / (2 * np.pi)
-    turn = float(modes[0] * np.sqrt(left / noise))  # torque goes with 1 / stiffness
+    turn = float(modes[0] * np.sqrt(residual / noise))  # torque goes with 1 / stiffness
     text = (
-        f"{1e3 * left:.2f} mN m with modes at {modes[0]:.0f} and {modes[1]:.0f} Hz, "
-        f"{significant(noise / left, 2)} times below the torque noise; as large with a mode at "
+        f"{1e3 * residual:.2f} mN m with modes at {modes[0]:.0f} and {modes[1]:.0f} Hz, "
+        f"{significant(noise / residual, 2)} times below the torque noise; as large with a mode at "
         f"{significant(turn, 2)} Hz"
     )
     return Measured(turn, text)
@@ -317,8 +313,8 @@ def snap() -> Measured:
 def backlash(gaps=(1e-3, 2e-3, 4e-3)) -> Measured:
     """Play behind a springy shaft that is significant, rad: share of the rigid body's torque."""
     loose = replace(_SHAFT, gap=np.outer((0, *gaps), (1, 1)))
-    left = _left(len(gaps) + 1, transmission=(loose,))
-    share, text = _shares(left[1:] - left[0])
+    residual = _left(len(gaps) + 1, transmission=(loose,))
+    share, text = _shares(residual[1:] - residual[0])
     turn = turns_at(gaps, share.max(-1), _SIGNIFICANT)
     text = f"if it had gears, play of {np.rad2deg(gaps[0]):.2f}°: {text}; "
     return Measured(turn, f"{text}{100 * _SIGNIFICANT:g} % from {np.rad2deg(turn):.2f}° on")
@@ -382,6 +378,8 @@ def sensor_noise(bits=(14, 15, 16, 17, 18, 19, 20)) -> Measured:
         return _SETUP.arm.inverse_dynamics(q[1:-1], qd, qdd)
 
     noise = {b: torque(Quantisation.encoder(b).apply(log)) - torque(log) for b in bits}
-    turn = min(b for b, left in noise.items() if _shares(left)[0].max() < _SIGNIFICANT)
+    turn = min(
+        b for b, torque_noise in noise.items() if _shares(torque_noise)[0].max() < _SIGNIFICANT
+    )
     text = f"16 bits, second differences at 100 a second: {_shares(noise[16])[1]}; below "
     return Measured(turn, f"{text}{100 * _SIGNIFICANT:g} % from {turn} bits on")

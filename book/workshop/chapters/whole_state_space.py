@@ -9,7 +9,6 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from ddlib import paper
-from ddlib._check import shaped
 from ddlib.analysis import input_shares, shuffled, transition_range
 from ddlib.figures.style import COLOURS, INK, JOINTS, Illustration, illustrate
 from ddlib.figures.weights import dots, largest_weight
@@ -19,7 +18,6 @@ from ddlib.tables import Table, quote, significant, spread
 from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.report import results
 from workshop.report.evidence import claims
-from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, mean, median
 from workshop.report.exact_states import random_states, states_along, torque
 
@@ -36,11 +34,6 @@ def hinton_states(weights: Weights) -> Illustration:
     of a hidden unit, and the middle row of an output unit, are the weights between them. A row of
     more than ten is squeezed.
     """
-    if weights.hidden_bias.ndim != 1 or weights.hidden_weights.shape[-2:] != (2, 3):
-        raise ValueError(
-            "weights must be of one network of two joints and three numbers each, "
-            f"got hidden weights of shape {weights.hidden_weights.shape}"
-        )
     largest = largest_weight(weights)
     hidden, outputs = len(weights.hidden_bias), len(weights.output_bias)
     rows = -(-hidden // 2)
@@ -93,9 +86,6 @@ def _torque_along(t, exact, predicted) -> Illustration:
     standard deviation, is the median; the shade holds the middle 80 % of all networks at each
     time.
     """
-    t = shaped("t", t, "(time,)")
-    exact = shaped("exact", exact, f"({t.size}, joint)")
-    predicted = shaped("predicted", predicted, f"(networks, {t.size}, {exact.shape[1]})")
     square = ((predicted - exact) ** 2).mean(1)
     error = (square / exact.var(0)).mean(-1)
     middle = predicted[np.argsort(error)[len(error) // 2]]
@@ -187,23 +177,6 @@ def _watched() -> np.ndarray:
     shares = input_shares(_networks().weights)
     largest = shares.reshape(*shares.shape[:2], 6).argmax(-1)
     return np.stack([(largest == k).mean(1) for k in (3, 1)])
-
-
-def _said() -> None:
-    """What the lesson says of the book's networks in words."""
-    a, _, six = _errors().values()
-    miss = [
-        np.sqrt(((_networks().torque(s) - torque(s)) ** 2).mean(1))
-        for s in (_states(), random_states(seed=1))
-    ]
-    stated("states-easier-place", [resampled(r) < 0.8 for r in (miss[0] / miss[1]).T])
-    stated("states-six-worse", resampled(six / a) > 2)
-    size = np.median(np.abs(_networks().weights.hidden_weights), 1).reshape(-1, 6)
-    small, big = (resampled(size[:, k]) for k in (0, 3))
-    rest = [resampled(size[:, k]) for k in (1, 2, 4, 5)]
-    ends = (small < np.min(rest, 0)) & (big > np.max(rest, 0))
-    stated("states-smallest-and-largest", ends)
-    stated("states-elbow-watched", resampled(_watched()[0], np.mean) > 0.55)
 
 
 def _exercise(number: int, *given) -> Exercise:

@@ -17,23 +17,21 @@ from ddlib.learning import (
     TrainingSet,
     Weights,
     cases,
-    p_value,
     surrogate,
     train_ensemble,
 )
-from ddlib.setups import INITIAL, JOINT_DAMPING, SETUPS, split, true_states
+from ddlib.setups import INITIAL, JOINT_DAMPING, split, true_states
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote
 from workshop.chapters import index, start
-from workshop.chapters.convolution_filters import _dots
+from workshop.chapters.convolution_filters import _dots, named_in_trial
 from workshop.chapters.exercises import Exercise, judging
 from workshop.chapters.widgets.starts import UnitFromFiveStarts as UnitFromFiveStarts
 from workshop.chapters.widgets.whose import GuessRound, WhoseFilters as WhoseFilters
 from workshop.report import results
-from workshop.report.evidence.statements import resampled, stated
 from workshop.report.measures import filter_trial as trial
 from workshop.report.studies.nulls import TRIAL
-from workshop.report.studies.start import RANGES
+from workshop.report.studies.random_starts import RANGES
 
 _WIDTH = 21
 
@@ -175,24 +173,10 @@ def carried_and_unrelated() -> Illustration:
     return decomposed({name: row / np.abs(row).max() for name, row in rows.items()}, LOG_STEP)
 
 
-def _named(name: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Share of a name in the hidden filters of the trial: the arm's torques, and each null."""
-    row = trial.row(_WIDTH)
-    nulls = {k: trial.share(x, "hidden", [name]) for k, x in trial.matched(row).items()}
-    return trial.share(row["real"], "hidden", [name]), nulls
-
-
-def _velocity_elsewhere() -> np.ndarray:
-    """Share of velocity filters by controller and start: the arm's torques, and two unrelated."""
-    places = [(r, s) for r in SETUPS for s in results.read("start-nulls")["ranges"]]
-    shares = (start.shares_beside(*place, "velocity") for place in places)
-    return np.array([[each[k].mean() for k in ("real", "shifted", "phases")] for each in shares])
-
-
 def _quoted() -> None:
     """Numbers of the lesson."""
     for name in ("velocity", "acceleration"):
-        real, nulls = _named(name)
+        real, nulls = named_in_trial(name)
         means = {kind: 100 * each.mean() for kind, each in nulls.items()}
         quote(f"whose-{name}", 100 * real.mean())
         if name == "velocity":
@@ -206,35 +190,6 @@ def _quoted() -> None:
     quote("whose-draws", study["draws"])
     for name, size in (("small", 0.03), ("large", 0.3)):
         quote(f"whose-named-{name}", 100 * start.named(JOINT_DAMPING.name, size).mean())
-
-
-def _said() -> None:
-    """What the lesson says in words about committed results, and of networks trained as in it."""
-    real, nulls = _named("velocity")
-    few = list(map(np.mean, nulls.values()))
-    stated("whose-velocity-any", (resampled(real, np.mean) < min(few)) & (max(few) < 0.1))
-    stated("whose-velocity-none", not real.any())
-    real, nulls = _named("acceleration")
-    chances = [p_value(real.mean(), nulls[kind], "more") for kind in ("shifted", "phases")]
-    apart = real.mean() > max(nulls[kind].max() for kind in ("shifted", "phases"))
-    stated("whose-acceleration-more", max(chances) < 0.06 and apart)
-    places = _velocity_elsewhere()
-    stated("whose-velocity-elsewhere", all(min(few) > own for own, *few in places))
-    run = nulls["other run"]
-    stated("whose-run-beyond", run.max() > real.mean() > run.mean())
-    other = start.other_torques()
-    stated("whose-other-arm", other["another arm"][0] > other["own"][0] / 2)
-    named = [start.named(JOINT_DAMPING.name, size) for size in (0.03, 0.3)]
-    more = [resampled(x, np.mean, seed=k) for k, x in enumerate(named)]
-    stated("whose-start-hides", more[0] > more[1])
-    study = results.read("targets")
-    unnamed = {
-        size: resampled(shares["not analysable"], np.mean)
-        for size, shares in zip(study["initial"], study["by initial"]["real torques"])
-    }
-    stated("whose-few-names", (unnamed[0.03] < 0.5) & (unnamed[0.3] > 0.5))
-    turn = [start.turned().replicates > 0]
-    stated("whose-small-turns", turn[0])
 
 
 def _exercise(number: int, given, *others) -> Exercise:

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ddlib._check import integer
 from ddlib.analysis import content
 from ddlib.learning import Directions, TrainingSet
 from ddlib.setups import WINDOWS
@@ -78,21 +77,11 @@ class _SpectrumExplorer(CurveWidget):
 
     def __init__(self, study: Mapping, directions: Sequence[Directions], **options):
         cells = study["cells"]
-        if len(directions) != len(cells):
-            raise ValueError(
-                f"directions must be one for each of {len(cells)} cells, got {len(directions)}"
-            )
         names, self._cells = [], {}
-        for cell, along in zip(cells, directions):
-            width = integer("width", cell["width"], 3)
-            if along.filters.shape[-1] != width:
-                raise ValueError(
-                    f"directions must be of window {width} like its cell, "
-                    f"got {along.filters.shape[-1]}"
-                )
+        for cell, along in zip(cells, directions, strict=True):
             name = "{}, inputs {:g} to {:g}".format(cell["setup"], *cell["scaling"])
             names += [name] if name not in names else []
-            self._cells[names.index(name), width] = cell, along
+            self._cells[names.index(name), cell["width"]] = cell, along
         epochs = study["epochs"][1:]  # at epoch 0 nothing has changed
         shown = len(cells[0]["measured"]["error"][0])
         self._index = {epoch: k for k, epoch in enumerate(epochs, 1)}

@@ -8,7 +8,6 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ddlib import paper
-from ddlib._check import finite_array
 from ddlib.figures.maps import SIGNS, rmss_by_window
 from ddlib.figures.style import (
     COLOURS,
@@ -24,7 +23,6 @@ from ddlib.learning import (
     Weights,
     cases,
     default_rate,
-    sliding_windows,
     train_ensemble,
 )
 from ddlib.metrics import rmss
@@ -35,8 +33,6 @@ from workshop.chapters.exercises import Between, Exercise, OneOf, judging
 from workshop.chapters.widgets.window import HiddenTorque
 from workshop.report import results
 from workshop.report.evidence import claims
-from workshop.report.evidence.statements import resampled, stated
-from workshop.report.measures import filter_trial
 
 _KINDS = ("training", "test")
 _NAMES = {"training": "training", "test": "trajectory 6"}
@@ -144,27 +140,9 @@ def figure_4_1() -> Illustration:
     return illustrate(draw, alt, 7.0, 5.0)
 
 
-def orders() -> dict[str, claims.Measured]:
-    """Whether the least median test error is at 21, of the three readings."""
-    names = {"state feedback": "", "position feedback": "-position", JOINT_DAMPING.name: "-damping"}
-    return {name: claims.measured(f"least-at-21{ending}") for name, ending in names.items()}
-
-
 def order_medians() -> dict[int, float]:
     """Median test errors by window, with damped joints."""
     return {w: claims.measured(f"table-4-1-test-{w}-damping").value for w in WINDOWS}
-
-
-def order_stated() -> bool:
-    """Hardly damped: least at 21; by the controller: not; damped joints: 41, and undecided."""
-    share = {name: order.replicates.mean() for name, order in orders().items()}
-    medians = order_medians()
-    return bool(
-        share["position feedback"] > 0.95
-        and share["state feedback"] < 0.05
-        and 0.05 < share[JOINT_DAMPING.name] < 0.95
-        and min(medians, key=medians.get) == 41
-    )
 
 
 def errors_by_reading() -> Illustration:
@@ -172,23 +150,15 @@ def errors_by_reading() -> Illustration:
     return rmss_by_window(_errors(), _PRINTED)
 
 
-_STEADY = 1.02  # a curve that never rises by more over its least value so far
-
-
-def _rise(errors: np.ndarray) -> np.ndarray:
-    """The largest rise of each curve over its least value so far, as a factor."""
-    return (errors / np.minimum.accumulate(errors)).max(0)
-
-
-def _schooled(width: int, slower: tuple[float, ...] = (1.0,), members: int = 5):
-    """The lesson's networks of a window size, at parts of its step: models and training errors."""
+def _schooled(width: int, slower: tuple[float, ...], members: int = 5):
+    """The lesson's networks of a window size, at parts of its step: epochs and training errors."""
     data = TrainingSet.from_recording(split(JOINT_DAMPING.record())[0], width, scaling=(0, 1))
     start = Weights.random(members, width, initial=JOINT_DAMPING.initial)
     many = Weights.concatenate([start] * len(slower))
     rate = default_rate(width) * np.repeat(slower, members)
     how = {"rate": rate, "momentum": 0.98, "warm_up": 500, "epochs": 4000, "progress": False}
-    model, run, _ = train_ensemble(many, data, **how)
-    return model, run.epochs, run.training.reshape(len(run.epochs), len(slower), members)
+    run = train_ensemble(many, data, **how)[1]
+    return run.epochs, run.training.reshape(len(run.epochs), len(slower), members)
 
 
 def _steepest(width: int, every: int = 50) -> tuple[np.ndarray, np.ndarray]:
@@ -236,30 +206,10 @@ def _steepest(width: int, every: int = 50) -> tuple[np.ndarray, np.ndarray]:
 def unsteady() -> Illustration:
     """Training at window 11, at the lesson's step and at a quarter; its steepest curvature."""
     parts = {"the lesson's step": 1.0, "a quarter": 0.25}
-    model, epochs, errors = _schooled(11, tuple(parts.values()))
-    longer = {w: _schooled(w) for w in (21, 41)}
+    epochs, errors = _schooled(11, tuple(parts.values()))
     at, steep = _steepest(11)
     bound = 2 * (1 + 0.98)
-    late = epochs > 500
-    whole, quarter = errors[late, 0], errors[late, 1]
-    others = [_rise(each[late, 0]) for *_, each in longer.values()]
-    stated("window-zigzag", bool((_rise(whole) > 1.2).mean() > 0.5))
-    stated("window-longer-fall", bool(np.max(others) < _STEADY))
-    stated("window-quarter", bool(_rise(quarter).max() < _STEADY))
-    stated("window-quarter-behind", bool(np.median(quarter[-1]) > 0.5))
-    early = steep[at <= 500].max() / bound
-    stated("window-steeper", bool(early < 0.8 and steep.max() > 0.97 * bound))
-    test = split(JOINT_DAMPING.record())[1]
-
-    def activity(model, width):
-        windows = sliding_windows(test.q, width, test.motion)
-        return model[0].weights.activity(model[0].scaled(windows))[0]
-
-    soft, hard = activity(longer[21][0], 21), activity(model, 11)
-    stated("window-soft", bool(np.abs(soft - 0.5).max() < 0.1))
-    ends = (np.minimum(hard, 1 - hard) < 0.1).mean(0)
-    stated("window-switches", bool((ends > 0.5).any()))
-    quote("window-quarter-end", np.median(quarter[-1]))
+    quote("window-quarter-end", np.median(errors[-1, 1]))
 
     def draw(figure: Figure):
         left, right = figure.subplots(1, 2)
@@ -292,79 +242,35 @@ def _bends() -> tuple[np.ndarray, np.ndarray]:
     return (line - windows).mean(-1), torque
 
 
-def _factors() -> dict:
-    """By how much medians are off the printed errors, up or down: ``{reading: (cells,)}``."""
-    every = [(what, w) for what in _KINDS for w in WINDOWS]
-    off = {n: [np.median(x[a][w]) / _PRINTED[a][w] for a, w in every] for n, x in _errors().items()}
-    return {name: np.exp(np.abs(np.log(ratios))) for name, ratios in off.items()}
-
-
-def _events(row: str) -> dict[str, np.ndarray]:
-    """Epochs at which the page's networks come to its three events; infinite if never."""
-    reached = results.read("page-training")["rows"][f"{row}, real"]
-    keys = "error", "direct", "hidden"
-    return {key: np.nan_to_num(np.array(reached[key], float), nan=np.inf) for key in keys}
-
-
-def _named_shifted() -> np.ndarray:
-    """Share of hidden filters with a name after the full training, for each shift."""
-    shifted = filter_trial.row(21)["nulls"]["shifted"]
-    return 1 - filter_trial.share(shifted, "hidden", ["not analysable"])
+def _worst(name: str) -> float:
+    """By what factor a reading's medians are off the printed errors at most, up or down."""
+    off = [np.median(_errors()[name][what][w]) / _PRINTED[what][w] for what, w in _CELLS]
+    return float(np.exp(np.abs(np.log(off)).max()))
 
 
 def _quoted() -> None:
     """Numbers of the lesson's prose."""
-    live, seen, off = results.read("page-training"), _events("as printed"), _factors()
-    first = int((seen["direct"] < seen["error"]).sum())
-    quote("window-live-first", how_many(first, live["members"]))
+    live = results.read("page-training")
+    reached = live["rows"]["as printed, real"]  # epochs of the page's events, if they came
+    direct, error = (
+        np.nan_to_num(np.array(reached[event], float), nan=np.inf) for event in ("direct", "error")
+    )
+    quote("window-live-first", how_many(int((direct < error).sum()), live["members"]))
     quote("window-live-level", live["level"])
-    quote("window-live-shifted", np.median(live["rows"]["as printed, shifted"]["test"]))
+    shifted = live["rows"]["as printed, shifted"]
+    quote("window-live-shifted", np.median(shifted["test"]))
+    quote("window-live-named", 100 * np.mean(shifted["named"]))
     bends, torque = _bends()
     quote("window-bend-sign", 100 * (np.sign(bends) == np.sign(torque)).mean())
     quote("window-steps", JOINT_DAMPING.steps)
-    quote("window-long-draws", len(_named_shifted()))
+    quote("window-long-draws", results.read("filter-trial")["draws"])
     for w in WINDOWS:
         weights = Weights.random(1, w)[0].count()
         quote(f"window-rule-{w}", 2 * w * JOINT_DAMPING.hidden)
         quote(f"window-count-{w}", weights)
         quote(f"window-passes-{w}", 1500 * weights)
-    quote("window-worst", off[JOINT_DAMPING.name].max())
-    quote("window-worst-state", off["state feedback"].max())
-
-
-def _said() -> None:
-    """What the lesson says in words of the book's networks."""
-    off, seen = _factors(), _events("as printed")
-    measured = [
-        (claims.measured(f"table-4-1-{what}-{w}-damping"), _PRINTED[what][w])
-        for what in _KINDS
-        for w in WINDOWS
-    ]
-    drawn = np.abs(np.log([error.replicates / printed for error, printed in measured])).max(0)
-    others = min(off[name].max() for name in SETUPS if name != JOINT_DAMPING.name)
-    stated("window-only-damping", np.exp(drawn) < others)
-    near = {name: bool((x <= _NEAR).all()) for name, x in off.items()}
-    stated("window-all-bold", [name for name in near if near[name]] == [JOINT_DAMPING.name])
-    bends, torque = _bends()
-    stated("window-bend", bool(((np.sign(bends) == np.sign(torque)).mean(0) > 0.9).all()))
-    stated("window-live-ahead", (seen["direct"] < seen["error"]).mean() > 0.9)
-    rows = results.read("page-training")["rows"]
-    shifted, real = (
-        resampled(rows[f"as printed, {x}"]["named"], np.mean, k)
-        for k, x in enumerate(("shifted", "real"))
-    )
-    stated("window-live-named", shifted > real)
-    trained = _named_shifted()
-    stated("window-long-named", trained.min() == 0 and trained.max() > 0.5)
-    stated("window-order", order_stated())
-    training, test = split(JOINT_DAMPING.record())
-    left = []
-    for w in WINDOWS:
-        (x, tau), (x6, tau6) = cases(training, w), cases(test, w)
-        x, x6 = (np.column_stack([a.reshape(len(a), -1), np.ones(len(a))]) for a in (x, x6))
-        left.append(rmss(x6 @ np.linalg.lstsq(x, tau, rcond=None)[0], tau6))
-    more = [error.replicates > each for (error, _), each in zip(measured[3:], left)]
-    stated("window-linear", np.all(more, 0))
+    quote("window-worst", _worst(JOINT_DAMPING.name))
+    quote("window-worst-state", _worst("state feedback"))
 
 
 def _exercise(number: int, *given) -> Exercise:
@@ -457,12 +363,6 @@ def intervals(
 ) -> Illustration:
     """Panels of rows, each with a point and an interval for every series."""
     rows = list(dict.fromkeys(r for series in panels.values() for s in series.values() for r in s))
-    for series in panels.values():
-        for points in series.values():
-            for row, point in points.items():
-                low, middle, high = finite_array(row, point)
-                if not low <= middle <= high:
-                    raise ValueError(f"interval of {row!r} must be in order, got {tuple(point)}")
 
     def draw(figure: Figure):
         axes = figure.subplots(1, len(panels), sharex=True, sharey=True, squeeze=False)[0]

@@ -6,21 +6,19 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-from scipy.stats import spearmanr
 
 from ddlib import figures, paper
 from ddlib.analysis import refitted, savitzky_golay
 from ddlib.effects import Quantisation
 from ddlib.figures.style import Illustration
 from ddlib.learning import cases, sliding_windows
-from ddlib.setups import JOINT_DAMPING, WINDOWS
+from ddlib.setups import JOINT_DAMPING
 from ddlib.tables import quote, significant
 from ddlib.widgets import Choice, CurveWidget, Panel, Scalar
 from workshop.chapters.exercises import Exercise, fitting, judging
-from workshop.chapters.window_networks import order_medians, order_stated
+from workshop.chapters.window_networks import order_medians
 from workshop.report import committed, results
 from workshop.report.evidence import claims
-from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, median
 
 
@@ -74,7 +72,7 @@ def acceleration_by_window() -> CurveWidget:
         errors[bits] = np.sqrt(np.mean(np.square(misses), 1) / truth.var())
     time, most = run.t[run.motion], 2.0 * np.abs(truth).max()
 
-    def told(width, bits):
+    def curves(width, bits):
         k = int(np.flatnonzero(sizes == width)[0])
         estimate = np.clip(estimates[bits, width], -most, most)
         error = {"errors": errors[bits], "error": errors[bits][k], "at": float(width)}
@@ -82,7 +80,7 @@ def acceleration_by_window() -> CurveWidget:
 
     label = "error / deviation of the acceleration"
     return CurveWidget(
-        told,
+        curves,
         [
             Choice("width", "Window", {int(w): f"{w} samples" for w in sizes}, 5, "slider"),
             Choice("bits", "Encoder", encoders, 12.5),
@@ -143,27 +141,6 @@ def _quoted() -> None:
     shuffled = results.read("memory")["rows"][-1]
     quote("size-memory-descent", np.median(shuffled["training"]))
     quote("size-memory-solver", np.median(shuffled["solver"]["training"]))
-
-
-def _said() -> None:
-    """Check what the lesson says in words of the book's networks."""
-    rows, sizes = results.read("window-sizes")["rows"], _medians("test")[0]
-
-    def trend(name):
-        drawn = np.array([resampled(row[name], seed=row["width"]) for row in rows])[:, :500]
-        return np.array([spearmanr(sizes, medians)[0] for medians in drawn.T])
-
-    stated("size-training-falls", trend("training") < -0.8)
-    stated("size-training-uneven", bool((np.diff(_medians("training")[1]) > 0).any()))
-    stated("size-test-falls", trend("test") < -0.5)
-    stated("size-test-uneven", bool((np.diff(_medians("test")[1]) > 0).any()))
-    level = least_squares_by_size()[sizes >= 11, 1]
-    stated("size-linear-level", bool(level.max() < 1.1 * level.min()))
-    stated("size-order", order_stated())
-    cells = results.read("table-4-1")["setups"]["state feedback"]
-    three = {w: np.median(cells[str(w)]["errors"]["test"]) for w in WINDOWS}
-    stated("size-order-state", min(three, key=three.get) == 41)
-    stated("size-unfinished", bool(behind_least_squares().sum() >= 4))
 
 
 def _exercise(number: int, floor=None) -> Exercise:

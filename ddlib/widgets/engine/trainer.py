@@ -6,7 +6,7 @@ import numpy as np
 import traitlets as t
 from scipy.spatial import ConvexHull
 
-from ddlib._check import integer, like, number, one_of, shaped
+from ddlib._check import instance, integer, number, one_of, shaped
 from ddlib.analysis import CLASSES, basis
 from ddlib.figures import JOINTS
 from ddlib.learning import (
@@ -199,7 +199,7 @@ class NetworkTrainer(PageWidget):
         shifts: int = SHIFTS,
         code: str = "",
     ):
-        like("setup", setup, "Setup")
+        instance("setup", setup, Setup)
         one_of("momentum", momentum, _MOMENTA)
         check_width(width)
         integer("hidden", hidden, 1)

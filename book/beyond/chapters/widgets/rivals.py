@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 
-from ddlib._check import one_of
 from ddlib.figures import JOINTS
 from ddlib.metrics import rmss
 from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS
@@ -43,7 +42,6 @@ class RivalPicker(CurveWidget):
         self._reference = results.read("rivals")["reference"]
         self._side = round(torque.shape[1] ** 0.5)  # trajectories in a row of the square
         rivals = [name for name in names if name != _MEASURED]
-        one_of("rival", rival, rivals)
         measured = self._torque[_MEASURED]
         scale = measured.reshape(-1, len(JOINTS)).std(0)
         self._errors = np.stack([rmss(self._torque[n], measured, scale=scale) for n in rivals], -1)

@@ -16,18 +16,18 @@ def _stirring_descent(days: int = 10, members: int = 20) -> dict:
     setup, width, t = JOINT_DAMPING, stirring._WIDTH, motions.times()
     how = {"rate": setup.rate / width, "momentum": setup.momentum, "warm_up": setup.warm_up}
     how |= {"epochs": setup.epochs, "progress": False}
-    models, left = [], []
+    models, training = [], []
     for day, runs in enumerate(motions.training(setup, range(days))):
         data = TrainingSet.from_recording(runs["pick and place"], width, scaling=setup.scaling)
         start = Weights.random(1, width, setup.hidden, initial=setup.initial, seed=day)
         model, history, _ = train_ensemble(start, data, **how)
         models.append(WindowFeedforward(model[0].torque, width))
-        left.append(history.training[-1, 0])
+        training.append(history.training[-1, 0])
     asked = {
         "circles": motions.stirred(setup.arm, motions.random_circles(members, motions.TEST_DAY), t),
         "pick and place": pick_and_place(random_extents(members, motions.TEST_DAY), t),
     }
-    result: dict = {"training": left, "hands": {}}
+    result: dict = {"training": training, "hands": {}}
     for motion, reference in asked.items():
         torques = {"none": [0 * reference.q], "network": [box(*reference) for box in models]}
         hands = stirring.hand_errors(setup.repeated(motions.TEST_DAY), torques, reference)

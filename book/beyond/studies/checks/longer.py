@@ -46,11 +46,11 @@ def _shaken(run) -> dict:
     waves = [np.hstack([np.cos(k * angle), np.sin(k * angle)]) for k in _TURNS]
     seen = [_band(wave, _SHAKEN)[inside] for wave in waves]
     fits = [(wave, np.linalg.lstsq(wave, error)[0]) for wave in seen]
-    left = [((error - wave @ factors) ** 2).sum() for wave, factors in fits]
+    residuals = [((error - wave @ factors) ** 2).sum() for wave, factors in fits]
     has = [_band(torque, band)[inside].std(0) for band in arm.BANDS]
     result = {"needed": [x[inside].std(0) for x in needed], "has": has}
     result["amplitude"] = [np.hypot(*factors) for _, factors in fits]  # rad
-    return result | {"share": 1 - np.array(left) / (error**2).sum()}
+    return result | {"share": 1 - np.array(residuals) / (error**2).sum()}
 
 
 @study

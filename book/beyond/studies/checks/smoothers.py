@@ -136,9 +136,9 @@ _ARMS: dict[str, tuple[Setup, Sequence[str], int]] = {
 }
 
 
-def _wrong(kept: _Kept, recording: Recording, every=1, logged=True) -> float:
+def _wrong(fitted: _Kept, recording: Recording, every=1, logged=True) -> float:
     torque = (recording.tau if logged else recording.tau_true)[..., recording.motion, :]
-    predict = kept.predict if logged or kept.applied is None else kept.applied
+    predict = fitted.predict if logged or fitted.applied is None else fitted.applied
     pairs = (x.reshape(-1, 2)[::every] for x in (predict(recording), torque))
     return float(rmss(*pairs))
 

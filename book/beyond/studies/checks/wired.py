@@ -56,10 +56,10 @@ def _tried(name: str, width: int, penalty: float, out: tuple, seed: int = 0) -> 
 def _chosen(name: str) -> dict:
     """Errors ``(blocks, seeds)``; window and penalty chosen by leaving out another block, too."""
     options = list(product(_WIDTHS, _MODELS[name][1]))
-    left = np.zeros((len(options), tx40.BLOCKS))
+    left_out = np.zeros((len(options), tx40.BLOCKS))
     for (k, option), (a, b) in product(enumerate(options), combinations(range(tx40.BLOCKS), 2)):
-        left[k, [b, a]] += _tried(name, *option, (a, b))  # what is learnt without b, tried on a
-    best = [options[k] for k in left.argmin(0)]
+        left_out[k, [b, a]] += _tried(name, *option, (a, b))  # what is learnt without b, tried on a
+    best = [options[k] for k in left_out.argmin(0)]
     seeds = range(_SEEDS if "network" in name else 1)
     errors = [[_tried(name, *o, (b,), seed)[0] for seed in seeds] for b, o in enumerate(best)]
     return {"chosen": best, "test": errors}

@@ -10,7 +10,6 @@ import numpy as np
 
 from beyond.control.windowed import WindowFeedforward
 from beyond.rivals.protocol import derivative_filters
-from ddlib._check import number
 from ddlib.control import PID, ComputedTorque, Feedforward, closed_loop, plant
 from ddlib.dynamics import Arm, end_point_error, jacobian
 from ddlib.effects import Effects, EncoderZero
@@ -63,7 +62,7 @@ def through_window(torque: _Model, width: int = WIDTH) -> WindowFeedforward:
     def model(windows):
         return torque(*np.moveaxis(windows @ filters.T, -1, 0))
 
-    return WindowFeedforward(model, width, step=LOG_STEP)
+    return WindowFeedforward(model, width)
 
 
 def networks(setup: Setup, count: int, width: int = WIDTH, **options) -> list[WindowFeedforward]:
@@ -92,7 +91,7 @@ def computed_torque(setup: Setup, arm: Arm | None = None) -> Callable:
 def rounded(extents_deg, seconds: float) -> Trajectory:
     """The paper's motions with corners averaged over a raised cosine of so many seconds."""
     plan = pick_and_place(extents_deg, TIMES)
-    half = round(number("seconds", seconds, 0.0, REST) / CONTROL_STEP / 2)
+    half = round(seconds / CONTROL_STEP / 2)
     if not half:
         return plan
     weights = 1 + np.cos(np.pi * np.arange(-half, half + 1) / (half + 1))

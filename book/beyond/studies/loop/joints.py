@@ -285,8 +285,8 @@ def _interactions() -> dict:
             only = np.zeros_like(states)
             only[:, j] = states[:, j]
             alone[:, j] = arm.torque(only)[:, j]
-        left = whole - alone
-        shares[str(joints)] = (left - left.mean(0)).std(0) / whole.std(0)
+        coupling = whole - alone
+        shares[str(joints)] = (coupling - coupling.mean(0)).std(0) / whole.std(0)
     return shares
 
 

@@ -11,9 +11,8 @@ from scipy.spatial import cKDTree
 
 from beyond.rivals.protocol import Cases
 from beyond.studies.loop.feedforwards import on_days
-from ddlib._check import finite_array, integer, one_of, positive, seed_number, shaped
 from ddlib.analysis import cells_reached
-from ddlib.dynamics import ELBOWS, Arm, follow_hand
+from ddlib.dynamics import Arm, follow_hand
 from ddlib.setups import Setup, true_states
 from ddlib.simulation import CONTROL_STEP, LOG_STEP, REST, Recording, follow
 from ddlib.trajectories import (
@@ -62,17 +61,6 @@ class Circles:
     bearing_deg: np.ndarray  # of the centre, degrees from the x axis
     clockwise: np.ndarray  # bool
 
-    def __post_init__(self):
-        for name in ("radius", "period", "distance"):
-            object.__setattr__(self, name, positive(name, getattr(self, name), "(runs,)"))
-        runs = f"({len(self.radius)},)"
-        for name in ("period", "distance", "bearing_deg"):
-            object.__setattr__(self, name, shaped(name, getattr(self, name), runs))
-        way = np.asarray(self.clockwise)
-        if way.dtype != bool or way.shape != self.radius.shape:
-            raise ValueError(f"clockwise must hold {runs} truth values, got {self.clockwise!r}")
-        object.__setattr__(self, "clockwise", way)
-
     def __len__(self):
         return len(self.radius)
 
@@ -89,15 +77,13 @@ class Circles:
 
 def random_circles(runs: int, seed: int) -> Circles:
     """Members of the family, each quantity uniform in its range, either way round."""
-    draw = np.random.default_rng(seed_number("seed", seed))
-    shape = (integer("runs", runs, 1),)
+    draw = np.random.default_rng(seed)
     ranges = (RADIUS, PERIOD, DISTANCE, BEARING)
-    return Circles(*(draw.uniform(*r, shape) for r in ranges), draw.random(shape) < 0.5)
+    return Circles(*(draw.uniform(*r, runs) for r in ranges), draw.random(runs) < 0.5)
 
 
 def _pace(t, start: str = "jump") -> np.ndarray:
     """Time as a motion sees it, with two derivatives; speed jumps, or rises within `_RAMP`."""
-    t = shaped("t", t, "(time,)")
     inside = np.clip(t, 0.0, MOTION_SECONDS)
     if start == "jump":
         moving = (t >= 0) & (t < MOTION_SECONDS * (1 - 1e-12))
@@ -118,7 +104,6 @@ def stirred(
     The motion is from 0 to `MOTION_SECONDS`; ``elbow`` is the sign of its angle, negative in
     pick-and-place, and ``start`` is "jump", as in Appendix I, or "smooth", after a ramp.
     """
-    one_of("elbow", elbow, ELBOWS)
     turning = np.where(circles.clockwise, -1, 1) * 2 * np.pi / circles.period
     angle, rate, change = turning[:, None] * _pace(t, start)[:, None]
     first = np.deg2rad(circles.bearing_deg)[:, None]
@@ -127,19 +112,17 @@ def stirred(
 
 def _around(arm: Arm, centre, radius, phase, elbow: str = "positive") -> Trajectory:
     """Joint motion of the hand on circles, its `phase` (rad) with two derivatives (runs, time)."""
-    radius = finite_array("radius", radius)
-    angle, rate, change = (finite_array("phase", x)[..., None] for x in phase)
+    angle, rate, change = (x[..., None] for x in phase)
     along = np.concatenate([np.cos(angle), np.sin(angle)], -1)
     across = np.concatenate([-np.sin(angle), np.cos(angle)], -1)
     size = radius[..., None, None]
-    places = finite_array("centre", centre, 2)[..., None, :] + size * along
+    places = centre[..., None, :] + size * along
     pull = size * (change * across - rate**2 * along)
     return follow_hand(arm, places, size * rate * across, pull, elbow)
 
 
 def _via_points(points, t, seconds: float = MOTION_SECONDS) -> Trajectory:
     """From rest at zero through points, rad, and back, by quintic splines; equal times."""
-    points, t = shaped("points", points, "(runs, points, 2)"), shaped("t", t, "(time,)")
     y = np.pad(points, ((0, 0), (1, 1), (0, 0))).swapaxes(0, 1)
     rest = [(k, np.zeros(y.shape[1:])) for k in (1, 2)]
     spline = make_interp_spline(np.linspace(0, seconds, len(y)), y, 5, bc_type=(rest, rest))
@@ -150,9 +133,8 @@ def _via_points(points, t, seconds: float = MOTION_SECONDS) -> Trajectory:
 
 def _random_points(runs: int, points: int, seed: int) -> np.ndarray:
     """Via points ``(runs, points, 2)``, rad, uniform over the angles of pick-and-place."""
-    draw = np.random.default_rng(seed_number("seed", seed))
-    shape = (integer("runs", runs, 1), integer("points", points, 1), 2)
-    return -np.deg2rad(draw.uniform(0.0, MAX_EXTENT_DEG, shape))
+    draw = np.random.default_rng(seed)
+    return -np.deg2rad(draw.uniform(0.0, MAX_EXTENT_DEG, (runs, points, 2)))
 
 
 def times(seconds: float = MOTION_SECONDS) -> np.ndarray:
@@ -221,20 +203,11 @@ def states(recording: Recording, setup: Setup) -> np.ndarray:
 
 def _nearest_distances(points, among) -> np.ndarray:
     """Distance of each point to the nearest one of another set, both ``(n, dimensions)``."""
-    points = shaped("points", points, "(n, dimensions)")
-    among = shaped("among", among, f"(n, {points.shape[1]})")
-    for name, x in (("points", points), ("among", among)):
-        integer(f"number of {name}", len(x), 1)
     return cKDTree(among).query(points)[0]
 
 
 def _shared_cells(points, among, cells: int) -> float:
     """Of the cells of the cube from -1 to 1 that `points` reach, the share that `among` reach."""
-    points = shaped("points", points, "(n, dimensions)")
-    among = shaped("among", among, f"(n, {points.shape[1]})")
-    for name, x in (("points", points), ("among", among)):
-        if not len(x) or np.abs(x).max() > 1:
-            raise ValueError(f"{name} must hold points within -1 to 1, got {len(x)} of them")
     mine, others, either = (
         cells_reached(x, 1.0, cells) for x in (points, among, np.concatenate([points, among]))
     )
@@ -277,7 +250,7 @@ _TRAINED = 5  # motions of a family on a day: as many as Appendix I has for trai
 
 def on_several_days(setup: Setup, references: list[Trajectory], days) -> list[Recording]:
     """Recordings of references of each day, with its own zero of the encoders and noise."""
-    days = shaped("days", days, f"({len(references)},)").astype(int)
+    days = np.asarray(days)
     together = Trajectory(*(np.stack(parts) for parts in zip(*references)))
     today = replace(setup, effects=on_days(setup.effects, setup, days))
     seeds = 1000 * (1 + days[:, None]) + np.arange(together.q.shape[1])

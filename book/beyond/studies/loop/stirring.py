@@ -186,16 +186,16 @@ def _filters(setup: Setup, rivals: dict, runs: list) -> dict:
     """Filters on the real torques and on torques with random phases, a draw for each day."""
     row: dict = {"classes": list(CLASSES)}
     for family in ("circles", "pick and place"):
-        null, left = [], []
+        null, explained = [], []
         for day, run in enumerate(runs):
             cases = Cases.windows(run[family], _WIDTH)
             drawn = surrogate("phases", cases.torque.reshape(5, -1, 2), day).reshape(-1, 2)
-            left.append(related(drawn, cases.x))
+            explained.append(related(drawn, cases.x))
             null.append(fitted(_maker(setup, "network", day), replace(cases, torque=drawn)))
         row[family] = {
             "real": _described(rivals["network", family], runs, family, setup),
             "phases": _described(null, runs, family, setup),
-            "related": left,
+            "related": explained,
         }
     return row
 

@@ -1,7 +1,21 @@
 """The paper's claims: read from ``book/claims.yml``, measured, judged.
 
-An entry has these fields:
+Claims are listed by the chapter that deals with them. Each is an entry with these fields::
 
+    - chapter: window-networks
+      claims:
+      - id: asymptote
+        where: section 3.3
+        claim: trained until the derivative of the error was nearly zero
+        printed: nearly zero
+        measure: windows.last_rate
+        band: {to: 0.1}
+        verdict: reproduced
+        refuted: A last rate of more than {a tenth} of what training took off.
+        why: What more training is worth is another row.
+
+``chapter``
+    The page of the book that deals with it; `LEDGER` if there is no other.
 ``id``
     A name, unique.
 ``where``
@@ -10,8 +24,6 @@ An entry has these fields:
     Left out for most. Whose arm it is judged on if not on the simulated ones of this book, like
     "a real arm"; and the id of the claim whose sentence of the paper it judges once more. It is
     judged like the others and not counted twice among the paper's.
-``chapter``
-    The page of the book that deals with it; `LEDGER` if there is no other.
 ``claim``
     What the paper says, in a few words of our own or a short quotation.
 ``printed``
@@ -39,10 +51,27 @@ An entry has these fields:
 ``refuted``
     One sentence, by the verdict: the outcome that would have made it "not reproduced"; for a claim
     that is, the outcome that would have made it better; why there is none, if by construction;
-    what a test would need, if not testable. An outcome is a noun with what belongs to it. Most
-    are ``{says: "An error of more than {}.", above: 0.5, as: half}``: a measured value ``above``
-    or ``below`` a bound, ``within`` or ``outside`` a factor of the printed number; the braces hold
-    the bound, or the words ``as`` which it is told.
+    what a test would need, if not testable. An outcome is a noun with what belongs to it. The edge
+    of the wider band stands in braces, in words or, by itself, as ``{}``: "more than {a tenth}".
+
+What several claims have in common is said once, in an entry with ``claims`` below it, each of which
+says what is its own. So one sentence of the paper is one entry, whatever it is tried with::
+
+    - id: asymptote-{width}
+      claim: trained until the derivative of the error was nearly zero, window {width}
+      ...
+      claims:
+      - with: {width: 11}
+        verdict: reproduced
+      - with: {width: 21}
+        verdict: qualitative
+      - reading: joint damping
+        with: {width: 21}
+        verdict: undecided
+
+``{width}`` in ``id`` and ``claim`` is an argument of ``with``. A ``reading`` of section 4 other than
+the entry's is the argument ``setup``, and is named at the end of both: the last one is
+"asymptote-21-damping".
 """
 
 from __future__ import annotations
@@ -52,7 +81,7 @@ import json
 import math
 import os
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache, lru_cache
 from pathlib import Path
@@ -101,6 +130,14 @@ SECTIONS = {
     "8": "Appendix I. Trajectories used",
 }
 
+# What ends id and sentence of a claim under a reading of section 4 other than its entry's
+_READINGS = {
+    "": ("", ""),
+    "state feedback": ("-state", ", with state feedback"),
+    "position feedback": ("-position", ", with position feedback alone"),
+    "joint damping": ("-damping", ", with damping in the joints"),
+}
+
 _PLACE = re.compile(
     r"(?P<abstract>Abstract)|(?P<appendix>Appendix I\b)"
     r"|section (?P<section>[1-7])(?:\.(?P<part>\d))?"
@@ -132,7 +169,6 @@ class Claim:
     arm: str = ""
     again: str = ""
     after: str = ""
-    outcome: Mapping = field(default_factory=dict)  # side and bound in `refuted`, if it has any
 
     def __post_init__(self):
         for name in ("id", "where", "chapter", "claim", "why", "refuted"):
@@ -324,9 +360,11 @@ class Printed(float):
         return (self.text,)
 
 
-# The parsers in C are seven times as fast; not every machine has them.
-_VALUES = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-_TEXTS = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
+class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):
+    """Numbers with a point as `Printed`; the parser in C, seven times as fast, where there is one."""
+
+
+_Loader.add_constructor("tag:yaml.org,2002:float", lambda _, node: Printed(node.value))
 
 
 def load(path: Path = CLAIMS_FILE) -> list[Claim]:
@@ -334,38 +372,52 @@ def load(path: Path = CLAIMS_FILE) -> list[Claim]:
     return list(_parsed(path.read_text(encoding="utf-8")))
 
 
-def _sentence(says: str, **outcome) -> tuple[str, dict]:
-    """What would refute a claim in words, and as sides and bounds of the measured value."""
-    words = outcome.pop("as", None)
-    filled = [words] if words else [f"{bound:,g}" for bound in outcome.values()]
-    return says.format(*filled), outcome
-
-
 @lru_cache(maxsize=4)
 def _parsed(text: str) -> tuple[Claim, ...]:
     """The claims of a file's text; a ledger asks for the same ones many times."""
-    claims, seen = [], set()
-    for entry, plain in zip(yaml.load(text, _VALUES), yaml.load(text, _TEXTS)):
-        entry = dict(entry)
-        entry["arguments"] = entry.pop("with", {})
-        if isinstance(entry.get("printed"), float):
-            entry["printed"] = Printed(plain["printed"])
+    claims = {}
+    for fields in _entries({"claims": yaml.load(text, _Loader)}, {}):
         try:
-            if isinstance(entry.get("refuted"), dict):
-                entry["refuted"], entry["outcome"] = _sentence(**entry["refuted"])
-            claim = Claim(**entry)
-        except TypeError as error:
+            claim = _claim(**fields)
+        except (TypeError, LookupError) as error:
             raise ValueError(
-                f"claim {entry.get('id')!r} must have the known fields: {error}"
+                f"claim {fields.get('id')!r} must have the known fields: {error}"
             ) from None
-        if claim.id in seen:
+        if claim.id in claims:
             raise ValueError(f"id must be unique, got {claim.id!r} twice")
-        seen.add(claim.id)
-        claims.append(claim)
-    for claim in claims:
-        if claim.again and claim.again not in seen:
+        claims[claim.id] = claim
+    for claim in claims.values():
+        if claim.again and claim.again not in claims:
             raise ValueError(f"again of claim {claim.id!r} must be an id, got {claim.again!r}")
-    return tuple(claims)
+    return tuple(claims.values())
+
+
+def _entries(entry: Mapping, around: Mapping) -> Iterator[dict]:
+    """The fields of each claim that an entry stands for, with what is said around it."""
+    arguments = {**around.get("with", {}), **entry.get("with", {})}
+    fields = {**around, **entry, "with": arguments}
+    inner = fields.pop("claims", None)
+    if inner is None:
+        yield fields
+    for each in inner or ():
+        yield from _entries(each, fields)
+
+
+def _claim(*, id: str, claim: str, refuted: str, reading: str = "", **fields) -> Claim:
+    """A claim of the fields that an entry gives it."""
+    arguments = fields.pop("with")
+    end, words = _READINGS[reading]
+    if reading:
+        arguments["setup"] = reading
+    edges = [f"{edge:,g}" for edge in (fields.get("loose") or fields.get("band") or {}).values()]
+    bounds = iter(edges)
+    return Claim(
+        id=id.format(**arguments) + end,
+        claim=claim.format(**arguments) + words,
+        refuted=re.sub(r"\{(.*?)\}", lambda braces: braces[1] or next(bounds), refuted),
+        arguments=arguments,
+        **fields,
+    )
 
 
 def measured(id: str) -> Measured:

@@ -165,7 +165,7 @@ def _run(method: str, places: list, seeds: list) -> dict:
                     break
             rows[-1][width] = errors_and_weights(model, history, recording)
     cells = {
-        str(w): {name: [float(one[w][name][0]) for one in rows] for name in rows[0][w]}
+        str(w): {name: [float(row[w][name][0]) for row in rows] for name in rows[0][w]}
         for w in WINDOWS
     }
     return {"values": values, "places": list(places), "derailed": derailed, "windows": cells}

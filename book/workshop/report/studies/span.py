@@ -131,13 +131,13 @@ def _halves(error) -> np.ndarray:
     Between recorded epochs it goes linearly on logarithmic scales; NaN if it never is.
     """
     epochs, halves = np.log(_COURSE[1:]), []
-    for each in np.log(2 * error[1:] / error[0]).T:
-        k = np.argmax(each <= 0)
-        if each[k] > 0:
+    for course in np.log(2 * error[1:] / error[0]).T:
+        k = np.argmax(course <= 0)
+        if course[k] > 0:
             halves.append(np.nan)
         else:
             before = max(k - 1, 0)
-            halves.append(np.exp(np.interp(0.0, each[[k, before]], epochs[[k, before]])))
+            halves.append(np.exp(np.interp(0.0, course[[k, before]], epochs[[k, before]])))
     return np.array(halves)
 
 

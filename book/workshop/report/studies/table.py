@@ -113,7 +113,7 @@ def _on_days(setup, days, networks, whiten=True) -> dict:
             cells[str(w)].append(
                 {**errors_and_weights(model, history, recording), "saturated": ends}
             )
-    return {w: {key: [one[key] for one in cell] for key in cell[0]} for w, cell in cells.items()}
+    return {w: {key: [row[key] for row in cell] for key in cell[0]} for w, cell in cells.items()}
 
 
 @study

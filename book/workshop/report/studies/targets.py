@@ -97,12 +97,12 @@ class _Targets:
         """
         f, before = weights.hidden_weights, start.hidden_weights
         given = self.trial.model(weights).torque(self.trial.windows)
-        left = wanted.reshape(given.shape) - given
+        residual = wanted.reshape(given.shape) - given
         counts = {"": names_counted(f), "added, ": names_counted(f - before)}
         variance = wanted.var((1, 2))
         return {
             "explained": (self.fitted(wanted).var((1, 2)) / variance).mean(-1),
-            "learnt": 1 - (left.var(1) / variance).mean(-1),
+            "learnt": 1 - (residual.var(1) / variance).mean(-1),
             "moved": np.sqrt(((f - before) ** 2).sum((1, 2, 3)) / (before**2).sum((1, 2, 3))),
             **{what + name: x for what, each in counts.items() for name, x in each.items()},
         }

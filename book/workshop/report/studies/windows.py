@@ -203,14 +203,14 @@ def _acceleration(members=25, epochs=2000, bits=3) -> dict:
     }
 
 
-def _start(training: Recording, width: int, members: int) -> tuple[TrainingSet, Weights]:
+def _data_and_start(training: Recording, width: int, members: int) -> tuple[TrainingSet, Weights]:
     data = TrainingSet.from_recording(training, width)
     return data, Weights.random(members, width, initial=STATE_FEEDBACK.initial)
 
 
 def _by_step(training: Recording, width: int, members: int, epochs: int) -> dict:
     """Training errors without and with acceleration, each ``(members, step sizes)``."""
-    data, start = _start(training, width, members)
+    data, start = _data_and_start(training, width, members)
     errors = {}
     for name, momentum in (("without", 0.0), ("with", STATE_FEEDBACK.momentum)):
         _, history, _ = train_ensemble(
@@ -227,7 +227,7 @@ def _by_step(training: Recording, width: int, members: int, epochs: int) -> dict
 
 def _race(training: Recording, members: int, width: int = 21) -> dict:
     """Training errors along the epochs, ``(points, members)``, without and with acceleration."""
-    data, start = _start(training, width, members)
+    data, start = _data_and_start(training, width, members)
     run = {}
     for name, (momentum, length) in zip(("without", "with"), _LENGTHS.items()):
         _, history, _ = train_ensemble(
