@@ -55,17 +55,16 @@ def rms(x):
 # What is computed
 
 
-@pytest.mark.parametrize("feedforward", [False, True])
-def test_curves_are_the_recorded_ones(feedforward):
-    """The same runs with a rest before the motion, by `record`."""
+def test_curves_are_the_recorded_ones():
+    """The same run with a rest before the motion, by `record`."""
     feedback = PID(**gains(200, 100, 30))
     recording = record(
         ARM,
-        Feedforward(ARM, feedback) if feedforward else feedback,
+        Feedforward(ARM, feedback),
         APPENDIX_I[5],
         effects=Effects(friction=(ViscousFriction(VISCOUS),)),
     )
-    shown = tuned(ARM, 200, 100, 30, 0, feedforward)
+    shown = tuned(ARM, 200, 100, 30, 0, True)
     at = np.searchsorted(recording.t, TIMES[TIMES < 2.9995] - 1e-9)
     error = np.rad2deg(recording.tracking_error)
     for j, joint in enumerate(JOINTS):
@@ -87,7 +86,7 @@ def test_growth_and_margins_are_python_controls(engine, arm):
     """At random gains, delays and control periods; the margins where a loop is stable."""
     rng = np.random.default_rng(7)
     given, wanted = [], []
-    for k in range(60):
+    for k in range(30):
         kp, kd = rng.uniform(40, 1200), rng.uniform(0, 80) * (k % 4 > 0)
         law = gains(kp, rng.uniform(0, 900) * (k % 3 > 0), kd)
         step, late = rng.choice([0.0005, 0.002, 0.008]), int(rng.choice([0, 1, 3, 20]))
@@ -97,7 +96,7 @@ def test_growth_and_margins_are_python_controls(engine, arm):
     answer = np.array(engine(LINEAR, [loops.modes(arm, VISCOUS), given]), dtype=float)
     wanted = np.array(wanted)
     stable = wanted[:, 0] < 0
-    assert 10 < stable.sum() < 50
+    assert 5 < stable.sum() < 25
     np.testing.assert_allclose(answer[:, 0], wanted[:, 0], rtol=1e-6, atol=1e-6)
     np.testing.assert_allclose(answer[stable], wanted[stable], rtol=1e-5, atol=1e-5)
 

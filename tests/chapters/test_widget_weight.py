@@ -58,12 +58,11 @@ def test_the_page_computes_what_python_does(tmp_path, visit, widget):
 
 
 @pytest.mark.browser
-@pytest.mark.parametrize("momentum", [0, 0.5])
-def test_steps_go_downhill(tmp_path, visit, widget, momentum):
+def test_steps_go_downhill(tmp_path, visit, widget):
     url = page_of(tmp_path / "page.html", widget)
-    opened = visit(f"{url}?one-weight=momentum:{momentum}")
+    opened = visit(f"{url}?one-weight=momentum:0.5")
     page = opened.page
-    wanted = steps(-2.0, 10.0, momentum, 11)
+    wanted = steps(-2.0, 10.0, 0.5, 11)
     now = "document.querySelector('.ddlib-weight').view.get('weight')"
     page.get_by_role("button", name="Step", exact=True).click()
     assert page.evaluate(now) == pytest.approx(wanted[1])

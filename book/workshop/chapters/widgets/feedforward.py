@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +17,7 @@ from ddlib.setups import (
     JOINT_DAMPING_KP as KP,
     JOINT_DAMPING_VISCOUS,
 )
-from ddlib.simulation import CONTROL_STEP, LOG_STEP, follow
+from ddlib.simulation import CONTROL_STEP, LOG_STEP, Recording, follow
 from ddlib.trajectories import (
     APPENDIX_I,
     MOTION_SECONDS,
@@ -124,6 +124,20 @@ def _reference(jump: bool) -> Trajectory:
     return Trajectory(*shape(_EXTENTS, _T))
 
 
+def _driven(ahead, gain, friction: bool, reference: Trajectory) -> Recording:
+    """The arm under the torques of a table, and springs."""
+    law = Feedforward(lambda *motion: ahead, proportional(gain))
+    effects = _FRICTION if friction else Effects()
+    return follow(_ARM, law, reference, _T, effects=effects, log_every=_EVERY)
+
+
+@cache
+def _error_alone(friction: bool, jump: bool) -> np.ndarray:
+    """Error with feedback alone, degrees."""
+    reference = _reference(jump)
+    return np.rad2deg(_driven(np.zeros_like(reference.q), KP, friction, reference).tracking_error)
+
+
 @lru_cache(maxsize=32)
 def _switched(model, masses, known, feedback, friction, jump) -> dict:
     """Curves and numbers of one setting, by ddlib's simulator: degrees, N m."""
@@ -134,14 +148,8 @@ def _switched(model, masses, known, feedback, friction, jump) -> dict:
         ahead = (masses / 100) * _ARM.inverse_dynamics(q, qd, qdd)
         if known:
             ahead = ahead + _FRICTION.friction_torque(qd)
-    effects = _FRICTION if friction else Effects()
-
-    def drive(torque, gain):
-        law = Feedforward(lambda *motion: torque, proportional(gain))
-        return follow(_ARM, law, reference, _T, effects=effects, log_every=_EVERY)
-
-    run = drive(ahead, KP if feedback else (0.0, 0.0))
-    alone = np.rad2deg(drive(0 * ahead, KP).tracking_error)
+    run = _driven(ahead, KP if feedback else (0.0, 0.0), friction, reference)
+    alone = _error_alone(friction, jump)
     error, ahead = np.rad2deg(run.tracking_error), ahead[::_EVERY]
     both = [np.sqrt((x**2).mean()) for x in (error, alone)]
     rows = {"share": 100 * both[0] / both[1]}
