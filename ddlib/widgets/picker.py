@@ -159,7 +159,6 @@ class TrajectoryPicker(CurveWidget):
                 "trajectories_deg must have training pairs that are not all on one line, as they "
                 f"span the hull, got {family[:-1].tolist()!r:.80}"
             )
-        self._hull = ConvexHull(family[:-1])
         curves = _Curves(setup, models, family[:-1])
         square = curves(*(x.ravel() for x in np.meshgrid(_AXIS, _AXIS, indexing="ij")))
         self.numbers = {n: x.reshape(2 * _AXIS.shape) for n, x in square.items() if x.ndim == 1}
@@ -172,7 +171,7 @@ class TrajectoryPicker(CurveWidget):
             alt="The square of shoulder and elbow extents with the trajectories of a recording; "
             "beside it joint angles and torques of the last one, the test, over 3 seconds.",
             scalars=[*peaks, *(Scalar(f"RMSS, {n}", f"RMSS, {n}", digits=2) for n in models)],
-            pad=_pad(family, self._hull),
+            pad=_pad(family, ConvexHull(family[:-1])),
             note=_NOTE if models else "",
             presets=Presets(
                 {
@@ -200,12 +199,6 @@ class TrajectoryPicker(CurveWidget):
         self.observe(self._to_parameters, "extents_deg")
         self.on_msg(self._on_message)
         self.extents_deg = family[-1].tolist()
-
-    @property
-    def interpolates(self) -> bool:
-        """Whether the extents lie in the hull."""
-        equations = self._hull.equations
-        return bool((equations[:, :2] @ self.extents_deg + equations[:, 2] <= 1e-9).all())
 
     def record(self):
         """Record the trajectory as it stands; returns and keeps the recording."""

@@ -5,12 +5,14 @@ from __future__ import annotations
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import time
 from types import SimpleNamespace
 
 import nbformat
+import psutil
 import pytest
 from book_pages import ROOT
 from bs4 import BeautifulSoup
@@ -18,6 +20,7 @@ from jupyter_cache import get_cache
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import build
+import dd_book
 from dd_book import CELL_INPUTS, PAGE_INPUTS, digest, sources
 
 STAMP = "_build/html/.built-from"
@@ -76,11 +79,13 @@ MATTERS = [
     (CELL_INPUTS, "book/results/numbers.json", True),
     (CELL_INPUTS, "book/claims.yml", True),
     (CELL_INPUTS, "requirements.txt", True),
+    (CELL_INPUTS, "book/data/motions.csv", True),
+    (CELL_INPUTS, "book/lectures.yml", False),
+    (PAGE_INPUTS, "book/lectures.yml", True),
     (CELL_INPUTS, "book/index.ipynb", False),
     (PAGE_INPUTS, "book/index.ipynb", True),
     (PAGE_INPUTS, "book/_static/book.css", True),
     (PAGE_INPUTS, "_config.yml", True),
-    (PAGE_INPUTS, "book/data/motions.csv", True),
     (PAGE_INPUTS, "book/.ipynb_checkpoints/index.ipynb", False),
     (PAGE_INPUTS, "book/.ruff_cache/0.14.0/1234567", False),
     (CELL_INPUTS, "book/workshop/.ruff_cache/CACHEDIR.TAG", False),
@@ -91,7 +96,7 @@ MATTERS = [
 ]
 
 
-def test_digest_sees_what_matters(tiny):
+def test_digest_sees_what_matters(tiny, monkeypatch):
     for inputs, path, changes in MATTERS:
         before, target = digest(tiny, inputs), tiny / path
         target.parent.mkdir(exist_ok=True, parents=True)
@@ -100,6 +105,13 @@ def test_digest_sees_what_matters(tiny):
     before = digest(tiny, CELL_INPUTS)
     (tiny / "ddlib" / "arm.py").rename(tiny / "ddlib" / "leg.py")
     assert digest(tiny, CELL_INPUTS) != before
+    for library in ("numpy", "scipy", "torch", "matplotlib"):
+        before = digest(tiny, CELL_INPUTS)
+        installed = dd_book.version
+        monkeypatch.setattr(
+            dd_book, "version", lambda n, a=library, v=installed: v(n) + "x" * (n == a)
+        )
+        assert digest(tiny, CELL_INPUTS) != before, library
 
 
 def test_the_digest_sees_every_file_that_is_kept(tmp_path):
@@ -129,9 +141,9 @@ def test_progress_is_told_in_lines(monkeypatch, tmp_path):
         time.sleep(0.45)
         if not notebook.cells:
             raise RuntimeError("the kernel died")
-        return SimpleNamespace(nb=notebook, err=None, time=0.45, cwd=cwd, exc_string="")
+        return SimpleNamespace(nb=notebook, err=None, time=0.45)
 
-    monkeypatch.setattr("jupyter_cache.executors.basic.single_nb_execution", executed)
+    monkeypatch.setattr(build, "single_nb_execution", executed)
     (tmp_path / "book").mkdir()
     for name in "abcd":
         write_page(tmp_path, "# Title", f"{name} = 1", name=name)
@@ -149,14 +161,13 @@ DRAWN = "import matplotlib.pyplot as plt\n\nplt.plot([1, 2])\nplt.show()"
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("folder", ["book", "Übung (1) [2]?/50%41"])
-def test_a_strict_build_holds_wherever_the_folder_lies(folder, tiny, tmp_path_factory, monkeypatch):
+def test_a_strict_build_holds_wherever_the_folder_lies(tiny, tmp_path_factory, monkeypatch):
     """With a picture, a page that leads to another, a file that is no page, and another backend."""
     monkeypatch.setenv("MPLBACKEND", "Agg")
     write_page(tiny, "# Title\n\n{doc}`chapter`", DRAWN)
     add_page(tiny, "# Chapter", "1 + 1")
     (tiny / "README.md").write_text("# No page")
-    root = shutil.copytree(tiny, tmp_path_factory.mktemp("away") / folder)
+    root = shutil.copytree(tiny, tmp_path_factory.mktemp("away") / "Übung (1)" / "a b")
     outcome = run(root, "--strict")
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
     assert (root / "_build" / "html" / "index.html").as_uri() in outcome.stdout
@@ -169,25 +180,90 @@ def test_a_strict_build_holds_wherever_the_folder_lies(folder, tiny, tmp_path_fa
     assert "Nothing changed" in run(root, "--strict").stdout
 
 
+def written(root, name: str) -> float:
+    return (root / "_build" / "html" / "book" / f"{name}.html").stat().st_mtime
+
+
 @pytest.mark.slow
-def test_notebooks_run_again_only_when_needed(tiny):
+def test_what_changed_is_made_again_and_nothing_else(tiny):
+    """A sentence: its page. A style: no notebook. Data and code: all notebooks."""
+    add_page(tiny, "# Chapter\n\nIt is quick.", "1 + 1")
+    add_page(tiny, "# Other", "2 + 2", name="other")
     first = run(tiny)
     assert first.returncode == 0, first.stdout + first.stderr
     assert "index.html" in first.stdout.splitlines()[-1]
     (tiny / "book" / "runs").rename(tiny / "runs")  # what the cell wrote is no source
+    assert "Nothing changed" in run(tiny).stdout
 
-    again = run(tiny)
-    assert again.returncode == 0
-    assert "Nothing changed" in again.stdout
-    assert not (tiny / "book" / "runs").exists()
+    before = {name: written(tiny, name) for name in ("chapter", "other")}
+    write_page(tiny, "# Chapter\n\nIt is light.", "1 + 1", name="chapter")
+    assert run(tiny).returncode == 0
+    assert (
+        written(tiny, "chapter") > before["chapter"] and written(tiny, "other") == before["other"]
+    )
+    texts = (tiny / "_build" / "html" / "_static" / "search-texts.js").read_text()
+    assert "It is light" in texts and "quick" not in texts and "book/chapter" in texts
+
+    write_page(tiny, "# Another title\n\nIt is light.", "1 + 1", name="chapter")
+    assert run(tiny).returncode == 0  # which stands in the contents of every page
+    assert "Another title" in (tiny / "_build/html/book/other.html").read_text(encoding="utf-8")
 
     (tiny / "book" / "_static" / "book.css").write_text("/* other style */")
     assert run(tiny).returncode == 0
     assert not (tiny / "book" / "runs").exists()
 
-    (tiny / "ddlib" / "arm.py").write_text("G = 9.80665\n")
-    assert run(tiny).returncode == 0
-    assert runs(tiny) == 1
+    for path in ("book/data/motion.csv", "ddlib/arm.py"):
+        (tiny / path).parent.mkdir(exist_ok=True)
+        (tiny / path).write_text("# 1\n")
+        assert run(tiny).returncode == 0
+        assert runs(tiny) == 1, path
+        (tiny / "book" / "runs").unlink()
+
+
+@pytest.mark.slow
+def test_one_page_is_built_alone(tiny):
+    """Its notebook is executed once, and no other; a fault in it is said in a line."""
+    add_page(tiny, "# Chapter\n\n{doc}`index`", "print('it ran')")
+    outcome = run(tiny, "--lesson", "chapter")
+    assert outcome.returncode == 0, outcome.stdout + outcome.stderr
+    page = tiny / "_build" / "page" / "html" / "book" / "chapter.html"
+    assert outcome.stdout.splitlines()[-1].endswith(page.as_uri())
+    assert "it ran" in page.read_text(encoding="utf-8") and not (tiny / "book" / "runs").exists()
+    write_page(tiny, "# Chapter", "1 / 0", name="chapter")
+    outcome = run(tiny, "--lesson", "chapter")
+    assert outcome.returncode == 1 and "FAILED: ZeroDivisionError" in outcome.stderr
+    assert "names no notebook book/none" in run(tiny, "--lesson", "none").stderr
+
+
+ENDLESS = "import os, pathlib, time\n\npathlib.Path('{}.pid').write_text(str(os.getpid()))\ntime.sleep(600)"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["Ctrl-C", "kill"])
+def test_an_interrupted_build_says_one_line_and_leaves_no_process(number, tiny):
+    """Ctrl-C reaches all processes of the group, `kill` the first alone."""
+    names = ("index", "chapter", "third", "fourth")  # more than run at once
+    for name in names[1:]:
+        add_page(tiny, "# Title", ENDLESS.format(name), name=name)
+    write_page(tiny, "# Title", ENDLESS.format("index"))
+    command = [sys.executable, str(ROOT / "book" / "_ext" / "build.py"), str(tiny)]
+    streams = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    build = subprocess.Popen(command, start_new_session=True, **streams)
+    files = [tiny / "book" / f"{name}.pid" for name in names]
+    while sum(path.is_file() for path in files) < 2 and build.poll() is None:
+        time.sleep(0.1)
+    (os.killpg if number == signal.SIGINT else os.kill)(build.pid, number)
+    lines = build.communicate(timeout=30)[0].splitlines()
+    assert build.returncode == 130 and lines[-1].startswith("==> Stopped")
+    assert (
+        len([line for line in lines if "notebooks after" not in line]) == 2
+    )  # what it does, and that
+    time.sleep(1)
+    assert not [
+        path for path in files if path.is_file() and psutil.pid_exists(int(path.read_text()))
+    ]
+    with pytest.raises(ProcessLookupError):
+        os.killpg(build.pid, 0)
 
 
 FAULTS = {

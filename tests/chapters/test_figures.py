@@ -245,7 +245,7 @@ FIGURES = {
     ),
     "courses": figure(
         partial(
-            adaptive_control._courses,
+            adaptive_control.courses,
             {"A": {"one": ERRORS, "two": 2 * ERRORS}, "B": {"one": ERRORS, "two": ERRORS}},
             2, "a load", "error, mm", "Two.",
         ),
@@ -253,7 +253,7 @@ FIGURES = {
     ),
     "stops_map": figure(
         partial(
-            adaptive_control._stops_map, [0.1, 1.0, 10.0], [0, 2],
+            adaptive_control.stops_map, [0.1, 1.0, 10.0], [0, 2],
             {"A": (np.where(STOPPED, np.inf, 1.0), STOPPED)}, ("rate", "delay, ms", "error, mm"),
             "A map with a cross.",
         ),
@@ -310,14 +310,14 @@ FIGURES = {
     "units at work": figure(global_view.at_work),
     "against": figure(
         partial(
-            run_time._against,
+            run_time.against,
             {"RMSS": MEMBERS, "loop, mm": {"21": (np.ones(2) * 5, np.ones(2) * 6)}}, "error, mm",
             "Two predictors.", ("loop, mm",),
         ),
         shows=[[*xy([1, 2], [3, 4]), *xy([1] * 3, [7] * 3)], [[(5, 6)] * 2, [(5, 5), (6, 6)]]],
         log="xy",
     ),
-    "verdicts": figure(partial(verdict._sections, {"section 2": {"reproduced": 3, "refuted": 1}})),
+    "verdicts": figure(partial(verdict.sections_figure, {"section 2": {"reproduced": 3, "refuted": 1}})),
     "maps": figure(
         partial(maps, EDGE, SQUARES, ("x, °", "y, °", "error"), "Maps.", mark=(20.0, 30.0)),
         shows=[[[(20, 30)]]] * 3, log=None, upon="#ffffff",

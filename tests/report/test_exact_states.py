@@ -1,4 +1,4 @@
-"""States of the simulated arm: the cube, a trajectory, the torque, refusals."""
+"""States of the simulated arm: the cube, a trajectory, the torque."""
 
 import numpy as np
 import pytest
@@ -29,15 +29,3 @@ def test_torque_is_the_inverse_dynamics(arm):
     states = random_states(50)
     for state, found in zip(states, torque(states, arm)):
         np.testing.assert_allclose(found, arm.inverse_dynamics(*state.T), rtol=1e-12)
-
-
-def test_refusals():
-    for call, words in (
-        (lambda: random_states(0), "samples must be an integer from 1"),
-        (lambda: random_states(5, radius=0.0), "radius must lie in"),
-        (lambda: states_along((10.0, 10.0), 1), "samples must be an integer from 2"),
-        (lambda: torque(np.zeros((5, 3))), r"\(samples, 2, 3\), got \(5, 3\)"),
-        (lambda: torque(np.full((5, 2, 3), np.nan)), "states must be finite"),
-    ):
-        with pytest.raises(ValueError, match=words):
-            call()

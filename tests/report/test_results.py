@@ -39,20 +39,11 @@ def test_json_keeps_five_digits_and_whole_numbers(tmp_path):
     assert [p.name for p in path.parent.iterdir()] == ["a.json"]
 
 
-def test_a_failed_write_leaves_the_old_file(tmp_path, monkeypatch):
+def test_what_is_no_number_does_not_replace_a_result(tmp_path):
     path = tmp_path / "a.json"
     results.write_json(path, {"a": 1})
     with pytest.raises(TypeError, match="set does not go into a results file"):
         results.write_json(path, {"a": {2}})
-    assert json.loads(path.read_text()) == {"a": 1}
-    assert [p.name for p in tmp_path.iterdir()] == ["a.json"]
-
-    def interrupted(*_):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(results.os, "replace", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        results.write_json(path, {"a": 3})
     assert json.loads(path.read_text()) == {"a": 1}
 
 
@@ -130,28 +121,18 @@ def table():
     return results.read("table-4-1")
 
 
-CELLS = [(s, w) for s in SETUPS for w in WINDOWS]
-
-
-def test_table_4_1_has_every_cell(table):
-    assert list(table["setups"]) == list(SETUPS)
-    for setup, width in CELLS:
-        cell, members = table["setups"][setup][str(width)], table["members"]
-        assert members >= 20
-        for name in ("best test", "largest weight", "slope", "derailed"):
-            assert len(cell[name]) == members, (setup, width, name)
-        history = cell["history"]
+@pytest.mark.parametrize("setup", SETUPS)
+def test_the_table_ends_where_its_histories_end(table, setup):
+    for width in WINDOWS:
+        cell = table["setups"][setup][str(width)]
         steps = SETUPS[setup].steps
-        wanted = (0, steps) if steps else (1, paper.EPOCHS)
-        assert (history["epochs"][0], history["epochs"][-1]) == wanted
+        epochs = cell["history"]["epochs"]
+        assert (epochs[0], epochs[-1]) == ((0, steps) if steps else (1, paper.EPOCHS))
         for name in ("training", "test"):
-            assert np.shape(history[name]) == (members, len(history["epochs"]))
-            np.testing.assert_allclose(
-                np.array(history[name])[:, -1], cell["errors"][name], rtol=0.02, err_msg=STALE
-            )
-        np.testing.assert_allclose(np.min(history["test"], 1), cell["best test"], rtol=1e-4)
-        worse = np.array(cell["errors"]["training"]) >= 1
-        np.testing.assert_array_equal(cell["derailed"], worse)
+            last = np.array(cell["history"][name])[:, -1]
+            np.testing.assert_allclose(last, cell["errors"][name], rtol=0.02, err_msg=STALE)
+        least = np.min(cell["history"]["test"], 1)
+        np.testing.assert_allclose(least, cell["best test"], rtol=1e-4)
 
 
 DRAW = random.Random(1988)

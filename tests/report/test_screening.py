@@ -4,7 +4,6 @@ from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
-import pytest
 
 from ddlib.learning import cases
 from ddlib.setups import JOINT_DAMPING
@@ -53,5 +52,3 @@ def test_without_its_start_a_recording_has_fewer_cases():
     np.testing.assert_array_equal(y.reshape(6, 300, 2)[:, 25:], y2.reshape(6, 275, 2))
     np.testing.assert_array_equal(x.reshape(6, 300, 2, 11)[:, 25:], x2.reshape(6, 275, 2, 11))
     np.testing.assert_array_equal(cases(_without_start(whole, 0.0), 11)[1], y)
-    with pytest.raises(ValueError, match="seconds"):
-        _without_start(whole, -0.1)

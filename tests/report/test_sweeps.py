@@ -60,8 +60,6 @@ def test_results_come_in_order(backend, quick, log):
     assert calls(log) == [1, 1, 2, 2, 3, 3]
     if backend == "loky":
         assert os.getpid() not in {entry["pid"] for entry in outcome}
-    with pytest.raises(ValueError, match="backend must be one of"):
-        quick(experiment, settings, backend="spark")
 
 
 def test_other_code_does_not_read_old_results(quick, monkeypatch):

@@ -8,7 +8,6 @@ from workshop.report.evidence.verdicts import (
     _CONTRADICTS,
     DECIDED,
     DRAWS,
-    FEWEST,
     STANDS,
     bootstrap,
     mean,
@@ -56,19 +55,6 @@ def test_networks_on_recordings_are_drawn_on_both_levels():
     assert (bootstrap(lambda cell: np.ptp(cell, axis=-1).max(-1), flat, nested=True) == 0).all()
 
 
-def test_bad_arguments():
-    for arguments, words in (
-        ((mean, (np.ones(3), np.ones(4))), r"same members in a tuple, got \[3, 4\]"),
-        ((mean, np.ones(0)), r"same members in a tuple, got \[0\]"),
-        ((mean, np.ones(FEWEST - 1)), "members must be an integer from 5 and up, got 4"),
-        ((np.mean, np.ones(FEWEST)), r"one number for each of 2000 draws, got shape \(\)"),
-    ):
-        with pytest.raises(ValueError, match=words):
-            bootstrap(*arguments)
-    with pytest.raises(ValueError, match="draws must be an integer from 2000"):
-        bootstrap(mean, np.ones(3), draws=1999)
-
-
 def test_what_a_written_verdict_bears():
     for written, share, holds in (
         ("reproduced", 1.0, True),
@@ -85,16 +71,12 @@ def test_what_a_written_verdict_bears():
     for share in np.linspace(0, 1, 201):
         found = {"reproduced": share, "not reproduced": 1 - share}
         assert not_contradicted(verdict_of_shares(found), found)
-    with pytest.raises(ValueError, match="written must be one of"):
-        not_contradicted("fine", {"reproduced": 1.0})
 
 
 def test_where_a_share_reaches_a_level():
     values = np.array([1.0, 2.0, 4.0])
     assert turns_at(values, 0.05 * values, 0.15) == pytest.approx(3.0)
     assert turns_at(values, 0.4 / values**2, 0.2) == pytest.approx(np.sqrt(2))  # falling
-    with pytest.raises(ValueError, match=r"shares must reach across 0\.5"):
-        turns_at(values, 0.05 * values, 0.5)
 
 
 def test_a_share_is_told_no_more_sharply_than_it_decides():

@@ -125,6 +125,7 @@ def assert_shown(page, explorer, models, **values):
 
 
 SIGNS = ("positive", "negative")
+FILLS = "[...document.querySelectorAll('svg.hinton path')].map((p) => getComputedStyle(p).fill)"
 
 
 @pytest.mark.browser
@@ -142,6 +143,8 @@ def test_pointer_keys_menus_and_names_choose(tmp_path, visit, explorer, models):
         return box["x"] + 0.3 * box["width"], box["y"] + 0.6 * box["height"]
 
     shows()
+    # the paper's: white is positive
+    assert page.evaluate(FILLS) == ["rgb(255, 255, 255)", "rgb(0, 0, 0)"]
     page.mouse.click(*place("hidden 2", "elbow"))
     shows(unit="hidden 2", joint="elbow")
     page.mouse.move(*place("hidden 2", "shoulder"))

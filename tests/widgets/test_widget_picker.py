@@ -98,12 +98,8 @@ def test_networks_see_what_the_simulator_records(full, networks):
 def test_the_square_is_of_the_trajectories_that_were_recorded():
     own = [[5, 5], [40, 5], [5, 40], [20, 20]]
     picker = TrajectoryPicker(trajectories_deg=own)
-    assert picker.extents_deg == (20, 20) and picker.interpolates
-    picker.extents_deg = (40, 40)
-    assert not picker.interpolates
-    for bad in ([[1, 2]], [*own, [46, 0]], [[0, 0, 0]]):
-        with pytest.raises(ValueError, match="trajectories_deg"):
-            TrajectoryPicker(trajectories_deg=bad)
+    assert picker.extents_deg == (20, 20)
+    assert len(picker.spec["pad"]["marks"]) == 4 and len(picker.spec["pad"]["region"]) == 3
 
 
 def test_the_map_is_of_the_exact_errors(full, picker):

@@ -1,13 +1,6 @@
-"""The widgets' script: in Node against Python, and in a browser without a kernel."""
+"""The widgets' script in a browser: against Python, and in a page without a kernel."""
 
 from __future__ import annotations
-
-import base64
-import json
-import os
-import shutil
-import subprocess
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,17 +9,16 @@ from widget_pages import (
     PATHS,
     READ,
     assert_curves,
+    functions,
     page_of,
     settings,
     shown_values,
 )
 from widget_samples import make, make_kinds, parameters, wave
 
-import ddlib.widgets
 from ddlib.widgets import Pad
 
-STATIC = Path(ddlib.widgets.__file__).with_name("static")
-CI = os.environ.get("CI", "").lower() in {"1", "true"}
+pytestmark = pytest.mark.browser
 
 
 @pytest.fixture(scope="module")
@@ -34,58 +26,34 @@ def waves():
     return make_kinds()
 
 
-# In Node
+SCRIPT = """([spec, baked, settings, points]) => {
+  const bytes = Uint8Array.from(baked);
+  const table = readTable(spec, new DataView(bytes.buffer));
+  const places = (values) => spec.parameters.map((p, k) => placeOf(p, values[k]));
+  const ranged = spec.parameters.map((p, k) => [p, k]).filter(([p]) => !p.options);
+  return {
+    curves: settings.map((values) => curvesAt(spec, table, places(values)))
+      .map((curves) => Object.values(curves).flatMap((curve) => [...curve])),
+    near: settings.map((values) => spec.parameters.map((p, k) => valueNear(p, values[k], true))),
+    unfit: spec.parameters.map((p) => [undefined, "10", -1e9, 1e9].map((x) => valueNear(p, x))),
+    steps: ranged.map(([p]) => [stepsOf(p, true), stepsOf(p, false)]),
+    inside: points.map((p) => insidePolygon(spec.pad?.region ?? [], ...p)),
+    back: settings.map((v) => ranged.map(([p, k]) => fromFraction(p, toFraction(p, v[k])))),
+    ticks: [[-4, 4, 3], [0, 1, 2], [-0.35, 7.2, 4]].map((t) => ticks(...t)),
+    around: [[-3.4, 8.1], [0, 0], [5, 5], [0.2, 30, true]].map((a) => around(...a)),
+  };
+}"""
 
 
 @pytest.fixture(scope="module")
-def node():
-    path = shutil.which("node")
-    if path is None:
-        (pytest.fail if CI else pytest.skip)("no Node.js found: install nodejs")
-    return path
+def call(browser):
+    with functions(browser, "numbers.js", "parameters.js", "table.js") as call:
+        yield call
 
 
-SCRIPT = """
-import fs from "node:fs";
-const [folder, input] = process.argv.slice(2);
-const [numbers, parameters, table_] = await Promise.all(
-  ["numbers", "parameters", "table"].map((name) => import(`${folder}/${name}.js`)));
-const { insidePolygon, ticks, around } = numbers;
-const { placeOf, valueNear, stepsOf, fromFraction, toFraction } = parameters;
-const { curvesAt, readTable } = table_;
-const { spec, baked, settings, points } = JSON.parse(fs.readFileSync(input));
-const bytes = Uint8Array.from(Buffer.from(baked, "base64"));
-const table = readTable(spec, new DataView(bytes.buffer));
-const places = (values) => spec.parameters.map((p, k) => placeOf(p, values[k]));
-const ranged = spec.parameters.map((p, k) => [p, k]).filter(([p]) => !p.options);
-console.log(JSON.stringify({
-  curves: settings.map((values) => curvesAt(spec, table, places(values)))
-    .map((curves) => Object.values(curves).flatMap((curve) => [...curve])),
-  near: settings.map((values) => spec.parameters.map((p, k) => valueNear(p, values[k], true))),
-  unfit: spec.parameters.map((p) => [undefined, "10", -1e9, 1e9].map((x) => valueNear(p, x))),
-  steps: ranged.map(([p]) => [stepsOf(p, true), stepsOf(p, false)]),
-  inside: points.map((p) => insidePolygon(spec.pad?.region ?? [], ...p)),
-  back: settings.map((v) => ranged.map(([p, k]) => fromFraction(p, toFraction(p, v[k])))),
-  ticks: [[-4, 4, 3], [0, 1, 2], [-0.35, 7.2, 4]].map((t) => ticks(...t)),
-  around: [[-3.4, 8.1], [0, 0], [5, 5], [0.2, 30, true]].map((a) => around(...a)),
-}));
-"""
-
-
-def run_script(node, folder, widget, chosen, points=()):
-    data = {
-        "spec": widget.spec,
-        "baked": base64.b64encode(widget.baked).decode(),
-        "settings": [list(values.values()) for values in chosen],
-        "points": points,
-    }
-    files = {"in.json": json.dumps(data), "run.mjs": SCRIPT}
-    for name, text in files.items():
-        (folder / name).write_text(text, encoding="utf-8")
-    command = [node, "run.mjs", STATIC.as_uri(), "in.json"]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+def computed(call, widget, chosen, points=()):
+    settings = [list(values.values()) for values in chosen]
+    return call(SCRIPT, [widget.spec, list(widget.baked), settings, list(points)])
 
 
 def assert_same(out, widget, chosen):
@@ -99,14 +67,14 @@ def assert_same(out, widget, chosen):
         assert all(x == y or x == pytest.approx(y, rel=1e-11) for x, y in zip(got, expected))
 
 
-def test_script_snaps_and_reads_as_python_does(node, tmp_path):
+def test_script_snaps_and_reads_as_python_does(call):
     region = [(0, 0), (1, -1), (2, 1)]
     widget = make(pad=Pad("decay", "phase", (), region))
     corners = ([1, 0, -1], [100, 2, 1], [10, 1, 0])
     ends = [{p.name: x for p, x in zip(parameters(), corner)} for corner in corners]
     chosen = [*settings(widget, 30), *ends]
     points = [(1, 0), (0.1, 0.5), (2, 1), (1.9, -1)]
-    out = run_script(node, tmp_path, widget, chosen, points)
+    out = computed(call, widget, chosen, points)
     assert_same(out, widget, chosen)
     np.testing.assert_allclose(out["back"], [list(v.values()) for v in chosen], atol=1e-9)
     assert out["unfit"] == [[10, 10, 1, 100], [0.5, 0.5, 0, 2], [0, 0, -1, 1]]
@@ -116,14 +84,12 @@ def test_script_snaps_and_reads_as_python_does(node, tmp_path):
     assert out["around"] == [[-5, 10], [0, 0.25], [4, 6], [0.1, 100]]
 
 
-def test_script_reads_choices(node, tmp_path, waves):
+def test_script_reads_choices(call, waves):
     chosen = list(settings(waves, 40))
-    assert_same(run_script(node, tmp_path, waves, chosen), waves, chosen)
+    assert_same(computed(call, waves, chosen), waves, chosen)
 
 
 # In a page without a kernel
-
-pytestmark = pytest.mark.browser
 
 
 def test_every_control_of_a_choice(tmp_path, visit, waves):

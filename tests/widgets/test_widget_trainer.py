@@ -24,7 +24,6 @@ from widget_pages import (
 
 from ddlib.analysis import CLASSES, classify, gains, mean_gradient
 from ddlib.dynamics import CMU_DD_ARM_II, with_load
-from ddlib.effects import IDEAL
 from ddlib.learning import Descent, TorqueModel, cases, default_rate
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING
@@ -144,20 +143,6 @@ def test_a_readers_own_arm_window_and_trajectories(evaluate):
     motion, read = recording.motion, own.record(other).q[-1]
     seen = read[motion.start - 5 : motion.stop + 5] / widget.spec["encoder"]
     assert np.abs(np.reshape(positions, (4, -1, 2))[-1] - seen).max() < 1.01
-
-
-@pytest.mark.parametrize(
-    "given, says",
-    [
-        ({"width": 12}, "width must be odd"),
-        ({"hidden": 0}, "hidden must be"),
-        ({"extents_deg": [(1, 2)] * 3}, "extents_deg must be 4 pairs"),
-        ({"setup": replace(JOINT_DAMPING, effects=IDEAL)}, "encoder must round"),
-    ],
-)
-def test_what_the_trainer_refuses(given, says):
-    with pytest.raises(ValueError, match=says):
-        NetworkTrainer(**given)
 
 
 @pytest.mark.browser
@@ -374,20 +359,11 @@ def test_python_hears_what_the_reader_does(driven):
     "name, value, says",
     [
         ("seed", 51, "seed must be an integer from 1 to 50, got 51"),
-        ("epoch", 2001, "epoch must be an integer from 0 to 2000, got 2001"),
-        ("inputs", "wide", "printed"),
-        ("step_size", 3.0, "0.25"),
         ("momentum", 0.7, "0.995"),
-        ("extents_deg", [(1, 2)], r"extents_deg must have shape \(6, 2\), got \(1, 2\)"),
-        ("extents_deg", [(46, 2)] * 6, r"extents_deg must lie in \[0, 45\] degrees, got 2 to 46"),
-        (
-            "extents_deg",
-            [(9, 0.5)] * 5 + [(9, 9)],
-            r"elbow in extents_deg .*\[1, inf\], got 0.5",
-        ),
+        ("extents_deg", [(9, 0.5)] * 5 + [(9, 9)], r"elbow in extents_deg .*\[1, inf\], got 0.5"),
     ],
 )
-def test_a_choice_outside_its_range_is_refused(widget, name, value, says):
+def test_a_choice_outside_its_range_changes_nothing(widget, name, value, says):
     before = getattr(widget, name)
     with pytest.raises(TraitError, match=says):
         setattr(widget, name, value)

@@ -31,7 +31,7 @@ from workshop.report.evidence.verdicts import Measured, judged
 _PLAIN = FuncFormatter(lambda value, place: f"{value:g}")
 
 
-def _courses(
+def courses(
     panels: dict[str, dict[str, np.ndarray]], change: int, event: str, label: str, alt: str
 ) -> Illustration:
     """Errors ``{title: {controller: (motions, runs)}}``: medians, and the middle half of all runs.
@@ -65,7 +65,7 @@ def _courses(
     return illustrate(draw, alt, 7.0, 3.6)
 
 
-def _stops_map(x, y, panels: dict[str, tuple], labels: tuple[str, ...], alt: str) -> Illustration:
+def stops_map(x, y, panels: dict[str, tuple], labels: tuple[str, ...], alt: str) -> Illustration:
     """Errors over two settings, ``{title: (errors, stopped)}`` with a row for each of `y`.
 
     A run that was stopped gets a cross. The labels are of x, y and the errors.
@@ -179,7 +179,7 @@ def _quoted() -> None:
         quote(f"adaptive-bed-{effect.replace(' ', '-')}", row["adapted"] / row["held"])
 
 
-def _rounded_figure() -> Illustration:
+def rounded_figure() -> Illustration:
     """The first figure: whole motions before and after a load, by how the plan is rounded."""
     titles = {"0": "the report's plan", "0.1": "rounded over 0.1 s", "0.2": "over 0.2 s"}
     panels = {
@@ -192,7 +192,7 @@ def _rounded_figure() -> Illustration:
         for title, rows in panels.items()
     )  # fmt: skip
     alt = f"Errors over eight motions, three plans. In the fourth and the last, mm: {medians}."
-    return _courses(panels, 4, "5 kg", "end-point error, mm", alt)
+    return courses(panels, 4, "5 kg", "end-point error, mm", alt)
 
 
 # --- the same set of rivals ------------------------------------------------------------------
@@ -213,7 +213,7 @@ def _fair(bits: float | None = None, filtered: float = 0.0) -> dict[str, np.ndar
     return fair_rivals.errors(bits=bits, filtered=filtered)
 
 
-def _fair_figure() -> Illustration:
+def fair_figure() -> Illustration:
     """A row for each rival: its first and its last error with an empty hand, and with a load."""
     errors, last = _fair(), fair_rivals.TRIALS - 1
     pairs = (("empty hand", 0, last, "o"), ("5 kg in the hand", last + 1, 2 * last + 1, "D"))
@@ -252,14 +252,6 @@ def fair_table() -> Table:
     heads = ("delay margin, ms", "1st", "4th", "5 kg: 1st", "5 kg: 4th")
     heads += ("16 bits alone", "12.5 bits alone", "12.5 bits, filtered")
     return Table(("error, mm", *heads), rows)
-
-
-_SHOWN = {"fair": _fair_figure, "rounded": _rounded_figure, "courses": _courses, "map": _stops_map}
-
-
-def show(name: str, *what, **how) -> Illustration:
-    """A figure of the lesson or its evidence page."""
-    return _SHOWN[name](*what, **how)
 
 
 def _exercise(number: int, given=None) -> Exercise:

@@ -254,7 +254,7 @@ def _quoted() -> None:
     quote("joints-cost-general", costs["Newton-Euler, general"])
 
 
-def _answer_figure() -> Illustration:
+def answer_figure() -> Illustration:
     """The first figure: errors by arm over motions, and of four joints in every draw."""
 
     def draw(figure: Figure):
@@ -279,8 +279,3 @@ def _answer_figure() -> Illustration:
     medians = ", ".join(f"{name} {np.median(each):.2f}" for name, each in _draws().items())
     alt = f"Errors of networks fall with the number of motions. Four joints, medians: {medians}."
     return illustrate(draw, alt, 7.2, 2.8)
-
-
-def show(name: str) -> Illustration:
-    """The first figure, "answer"."""
-    return {"answer": _answer_figure}[name]()

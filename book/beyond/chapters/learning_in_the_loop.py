@@ -89,7 +89,7 @@ def _by_trial(
     return illustrate(draw, alt, 6.4, 1.8 * len(panels) + 0.4)
 
 
-def _first_figure() -> Illustration:
+def motions_figure() -> Illustration:
     """Errors while one motion is practised, and then on others over that of the feedback alone."""
     motions = list(part("motion")["tests"])[1:]
 
@@ -126,7 +126,7 @@ def _first_figure() -> Illustration:
     return illustrate(draw, alt, 7.2, 3.1)
 
 
-def _course_figure() -> Illustration:
+def course_figure() -> Illustration:
     """Errors on fixed members of the family, trial by trial, with a load from half-way on."""
     study = results.read("learning-in-the-loop")
     x, number = np.arange(2 * study["trials"] + 1), study["trials"]
@@ -152,7 +152,7 @@ def _course_figure() -> Illustration:
     return _by_trial(panels, labels, alt, change=(number, f"{study['load']:.0f} kg in the hand"))
 
 
-def _rates_figure() -> Illustration:
+def rates_figure() -> Illustration:
     """Errors of feedback-error learning over its rate."""
     rates = np.array(results.read("learning-in-the-loop")["rates"])
     panels = {}
@@ -193,7 +193,7 @@ def _missing(lead: int, cut: float | None) -> np.ndarray:
     return np.array(missing)
 
 
-def _converges_figure() -> Illustration:
+def converges_figure() -> Illustration:
     """What a trial multiplies a missing torque with, over its frequency; and a hundred trials."""
     omega = np.geomspace(1, 200, 400)
     factor, missing = {}, {}
@@ -224,15 +224,6 @@ def _converges_figure() -> Illustration:
         f"Factor of a trial over frequency, and the missing torque over 100 trials, N m: {factors}."
     )
     return illustrate(draw, alt, 7.2, 2.9)
-
-
-_SHOWN = {"motions": _first_figure, "course": _course_figure, "rates": _rates_figure}
-_SHOWN["converges"] = _converges_figure
-
-
-def show(name: str) -> Illustration:
-    """A figure of the lesson or its evidence page."""
-    return _SHOWN[name]()
 
 
 def part(name: str, setup: str = "joint damping") -> dict:

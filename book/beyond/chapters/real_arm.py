@@ -262,7 +262,7 @@ def _quoted() -> None:
         quote(f"two-{name}", value)
 
 
-def _parts_figure() -> Illustration:
+def parts_figure() -> Illustration:
     """The current of joint 2 and three parts of it, without their names."""
     data, joint = Windowed.of(_RATE, 11), 2
     row, current = joint_terms(data.states)[joint], data.current[:, joint]
@@ -295,11 +295,6 @@ def _parts_figure() -> Illustration:
 
 _WEIGHT = ("cos(q2)", "sin(q2)", "cos(q2 + q3)", "sin(q2 + q3)", "offset")
 _MOVES = 7.2  # seconds for which the arm moves
-
-
-def show(name: str) -> Illustration:
-    """A figure of the lesson."""
-    return _parts_figure() if name == "parts" else swinging.show(name)
 
 
 def _exercise(number: int, *given) -> Exercise:

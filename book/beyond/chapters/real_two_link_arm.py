@@ -138,7 +138,7 @@ def numbers() -> dict[str, float]:
     return shares | middle | inertia
 
 
-def _window_figure() -> figures.Illustration:
+def window_figure() -> figures.Illustration:
     """The first figure: gravity by window, of least squares and of networks."""
     x, colours = 10 * np.array(results.read("two-link")["lengths"]), figures.COLOURS
 
@@ -178,7 +178,7 @@ def _window_figure() -> figures.Illustration:
     return figures.illustrate(draw, alt, 7.2, 2.4)
 
 
-def _elbow_figure() -> figures.Illustration:
+def elbow_figure() -> figures.Illustration:
     """The elbow's inertia in the networks of three designs."""
 
     def draw(figure):
@@ -214,7 +214,7 @@ def _spread(x) -> str:
     return f"{middle:.2f}\u00a0({low:.2f}\u2060–\u2060{high:.2f})"
 
 
-def _errors_table() -> Table:
+def errors_table() -> Table:
     """Errors on runs that were left out, by model and design, beside the report's."""
     surrogate = results.read("table-4-1")["setups"]["joint damping"]
     rows = []
@@ -226,11 +226,3 @@ def _errors_table() -> Table:
             beside = f"{paper.TABLE_4_1[int(model)].test:.2f}, {ours:.2f}"
         rows.append((name, *cells, beside))
     return Table(("model", *_designs(), "printed, simulated"), rows)
-
-
-_SHOWN = {"window": _window_figure, "elbow": _elbow_figure, "errors": _errors_table}
-
-
-def show(name: str) -> figures.Illustration | Table:
-    """A figure or table of the lesson or its evidence page."""
-    return _SHOWN[name]()

@@ -144,7 +144,7 @@ def _errors(name: str, part: str = "trajectory 6") -> np.ndarray:
     return np.array(_entered()[name]["errors"][part])
 
 
-def _ratios() -> Table:
+def ratios_table() -> Table:
     """Errors of some rivals over the network's, on trajectory 6 and on the square, and counts."""
     rows = []
     for name, label in _BESIDE.items():
@@ -157,10 +157,8 @@ def _ratios() -> Table:
     return Table(("rival", *heads), rows)
 
 
-def show(name: str = "errors") -> Illustration | Table:
-    """Errors of every rival, tuned alike, and stored numbers; or the table of "ratios"."""
-    if name == "ratios":
-        return _ratios()
+def errors_figure() -> Illustration:
+    """Errors of every rival, tuned alike, and stored numbers."""
     marked = results.read("tuned")["reference"]
     shown = {}
     for name, one in _entered().items():

@@ -37,7 +37,7 @@ _KINDS = (
 )  # fmt: skip
 
 
-def _against(
+def against(
     panels: dict[str, dict[str, tuple]], label: str, alt: str, equal: tuple[str, ...]
 ) -> Illustration:
     """A quantity over its predictors, both logarithmic: a panel each, a dot for each member.
@@ -219,7 +219,7 @@ def _quoted() -> None:
     quote("run-time-rank", predicts(width=21).value)
 
 
-def _square_figure() -> Illustration:
+def square_figure() -> Illustration:
     """The first figure: the end-point error over the square of extents, by four feedforwards."""
     study = results.read("run-time")
     lines = {"no feedforward": "none", "network, window 21": NETWORK,
@@ -231,14 +231,6 @@ def _square_figure() -> Illustration:
     labels = ("extent of the shoulder, °", "extent of the elbow, °", "end-point error, mm")
     edge = np.array(study["extents"])[: study["points"], 1]
     return maps(edge, grids, labels, f"Maps over the extents of shoulder and elbow: {medians}.")
-
-
-_SHOWN = {"square": _square_figure, "against": _against}
-
-
-def show(name: str, *what, **how) -> Illustration:
-    """A figure of the lesson or its evidence page."""
-    return _SHOWN[name](*what, **how)
 
 
 def _exercise(number: int, error=None) -> Exercise:

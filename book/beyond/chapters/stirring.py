@@ -27,7 +27,7 @@ _DOTS = {
 _BY_DESCENT = "network: pick-and-place, by descent"
 
 
-def _traded() -> Illustration:
+def traded_figure() -> Illustration:
     """The hand's errors on one family against those on the other: a dot for each network."""
     points = {label: [hand(name, m) for m in _FAMILIES] for name, label in _DOTS.items()}
     points[_BY_DESCENT] = [np.array(_descended()[m]["network"]) for m in _FAMILIES]
@@ -58,11 +58,6 @@ def _traded() -> Illustration:
         f"feedforward {nothing[1]:.1f} and {nothing[0]:.1f} mm. Medians: {medians}."
     )
     return illustrate(draw, alt, 6.2, 3.4)
-
-
-def show(name: str) -> Illustration:
-    """The lesson's figure of ten days, "traded"."""
-    return {"traded": _traded}[name]()
 
 
 def hands_table() -> Table:

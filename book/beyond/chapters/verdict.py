@@ -100,7 +100,7 @@ def _beyond_all(reading: str, size: float) -> bool:
     return bool(np.median(row["real"]["M11"]) > null)
 
 
-def _names() -> Table:
+def names_table() -> Table:
     """Shares of acceleration and velocity filters, with the arm's torques and unrelated ones."""
     rows = []
     for reading in SETUPS:
@@ -115,7 +115,7 @@ def _names() -> Table:
     return Table(("reading", "start", *heads), rows)
 
 
-def _inertias() -> Table:
+def inertias_table() -> Table:
     """The shoulder's inertia in networks, and in the arm, in the median."""
     rows = []
     for name, width in (("damped joints, window 21", 21), ("damped joints, window 11", 11)):
@@ -191,7 +191,7 @@ def _said() -> None:
     stated("verdict-unsettled", _verdicts("weights-stable") == ["not reproduced"])
 
 
-def _sentences() -> Illustration:
+def sentences_figure() -> Illustration:
     """The first figure: how many sentences have which word, and one of them each."""
     sentences = of_kind("system")
     counts = tally(sentences)
@@ -240,6 +240,17 @@ def _by_section() -> dict[str, dict[str, int]]:
     return {section: tally(group) for section, group in groups.items()}
 
 
+def planned_table() -> Table:
+    """Rows of the ledger on what the report planned."""
+    return _chosen(claim.id for claim in claims.of_the_paper() if claim.where == "section 7.1")
+
+
+def summed_table(right: bool) -> Table:
+    """Rows that the verdict sums up: what the report got right, or all others."""
+    verdicts = zip(_SUMMED, _verdicts(*_SUMMED))
+    return _chosen(row for row, verdict in verdicts if (verdict == "reproduced") == right)
+
+
 def _chosen(ids: Iterable[str]) -> Table:
     """Some rows of the ledger: claim and its chapter, printed value, ours, verdict, reason."""
     known, rows = {claim.id: claim for claim in load()}, []
@@ -262,11 +273,12 @@ def _chosen(ids: Iterable[str]) -> Table:
     return Table(header, [tuple(map(typeset, row)) for row in rows])
 
 
-def _sections(counts: Mapping[str, Mapping[str, int]]) -> Illustration:
+def sections_figure(counts: Mapping[str, Mapping[str, int]] | None = None) -> Illustration:
     """Sentences by section: one bar each below its title, a part for every word.
 
     A part has its number in it, unless it is too narrow to hold that.
     """
+    counts = _by_section() if counts is None else counts
     names = list(next(iter(counts.values())))
 
     def draw(figure: Figure):
@@ -299,10 +311,10 @@ def _sections(counts: Mapping[str, Mapping[str, int]]) -> Illustration:
     return illustrate(draw, f"Sentences by section of the paper. {rows}.", 7.0, height)
 
 
-def _readings_table(groups: Iterable[dict[str, Claim]], readings: Iterable[str]) -> Table:
+def readings_table() -> Table:
     """Verdicts of sentences by reading: a row for each, those that agree last."""
-    readings, rows = tuple(readings), []
-    for group in groups:
+    readings, rows = tuple(SETUPS), []
+    for group in _by_reading(claims.of_the_paper()):
         first = min(group.values(), key=lambda claim: len(claim.claim))
         verdicts = [group[name].verdict if name in group else "–" for name in readings]
         same = len({claim.verdict for claim in group.values()}) == 1
@@ -375,24 +387,6 @@ def reproduced_share(reading: str = "every") -> Measured:
         name, by_word = next(iter(cards.by_reading(some).items()))
     reproduced, total = by_word["reproduced"], sum(by_word.values())
     return Measured(reproduced / total, f"{reproduced} of {total}, {name}")
-
-
-def show(name: str) -> Illustration | Table:
-    """A figure or table of the lesson or its evidence page."""
-    if name == "sentences":
-        return _sentences()
-    if name == "names":
-        return _names()
-    if name == "inertia":
-        return _inertias()
-    if name == "sections":
-        return _sections(_by_section())
-    if name == "readings":
-        return _readings_table(_by_reading(claims.of_the_paper()), SETUPS)
-    if name == "planned":
-        return _chosen(claim.id for claim in claims.of_the_paper() if claim.where == "section 7.1")
-    right = [held == "reproduced" for held in _verdicts(*_SUMMED)]
-    return _chosen(row for row, held in zip(_SUMMED, right) if held == (name == "right"))
 
 
 def _exercise(number: int, *given) -> Exercise:

@@ -146,24 +146,20 @@ NETWORKS = {
 _LEVEL = 0.75  # Training RMSS to which runs with and without acceleration are timed
 
 
-@cache
-def _raced() -> dict[str, History]:
-    """Eight networks of the lesson's recordings without and with momentum, at the same step."""
-    data = TrainingSet.from_recording(JOINT_DAMPING.record()[:-1], 21, scaling=(-1, 1))
-    momenta = {"no momentum": 0.0, "momentum 0.9": 0.9, "momentum 0.98": 0.98}
-    how = {"epochs": 2000, "warm_up": 500, "progress": False}
-    start = Weights.random(8, 21)
-    return {n: train_ensemble(start, data, momentum=m, **how)[1] for n, m in momenta.items()}
-
-
 def walked() -> Illustration:
     """The network of the walk: window 21, ten hidden units."""
     return network_diagram(Weights.random(1, 21)[0])
 
 
 def race() -> Illustration:
-    """Their training errors."""
-    lines = {name: (run.epochs, run.training) for name, run in _raced().items()}
+    """Eight networks of the lesson's recordings without and with momentum, at the same step."""
+    data = TrainingSet.from_recording(JOINT_DAMPING.record()[:-1], 21, scaling=(-1, 1))
+    momenta = {"no momentum": 0.0, "momentum 0.9": 0.9, "momentum 0.98": 0.98}
+    how = {"epochs": 2000, "warm_up": 500, "progress": False}
+    start, lines = Weights.random(8, 21), {}
+    for name, momentum in momenta.items():
+        run = train_ensemble(start, data, momentum=momentum, **how)[1]
+        lines[name] = run.epochs, run.training
     ends = "; ".join(f"{name} {np.median(y[-1]):.2f}" for name, (_, y) in lines.items())
     alt = f"Families of curves over the epochs; medians at the end: {ends}."
     return families({"": lines}, ("epoch", "training RMSS"), alt, height=2.3, y_log=True)

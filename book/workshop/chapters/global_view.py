@@ -167,20 +167,15 @@ def _quoted() -> None:
     quote("global-trial-unrelated", 100 * least)
     for key in ("real", "untrained"):
         quote(f"global-cancel-{key}", 100 * np.median(row[key]["cancelled"]))
-        quote(f"global-read-{key}", np.median(np.array(row[key]["probe"])[:, [0, 2]]))
-        quote(f"global-read-acceleration-{key}", np.median(_read(row[key], "acceleration")))
+        velocity, acceleration = np.moveaxis(np.reshape(row[key]["probe"], (-1, 2, 2)), -1, 0)
+        quote(f"global-read-{key}", np.median(velocity))
+        quote(f"global-read-acceleration-{key}", np.median(acceleration.mean(1)))
     whole, pure, rest = (
         np.array(row["interventions"][name]["at once"])[:, 0]
         for name in ("as trained", "pure parts", "without pure parts")
     )
     quote("global-pure", np.median(pure / whole))
     quote("global-without-pure", np.median(rest / whole))
-
-
-def _read(row: dict, what: str) -> np.ndarray:
-    """R² with which a probe reads the velocity or the acceleration from each network's units."""
-    columns = {"velocity": [0, 2], "acceleration": [1, 3]}[what]
-    return np.array(row["probe"])[:, columns].mean(-1)
 
 
 def _exercise(number: int, *given) -> Exercise:

@@ -190,18 +190,15 @@ def errata(path: Path = _FILE) -> Table:
 
 def _filled(kind: str, fields: tuple, path: Path, values: dict[str, str]) -> list[tuple]:
     """The entries of a file, as rows, with values in place of their names."""
-    text, rows = path.read_text(encoding="utf-8"), []
-    for number, entry in enumerate(yaml.safe_load(text), 1):
-        if not isinstance(entry, dict) or set(entry) != set(fields):
-            raise ValueError(f"{kind} {number} must have the fields {fields}, got {entry!r}")
-        if not all(isinstance(text, str) and text.strip() for text in entry.values()):
-            raise ValueError(f"{kind} {number} must be of texts that are not empty, got {entry!r}")
+    rows = []
+    for number, entry in enumerate(yaml.safe_load(path.read_text(encoding="utf-8")), 1):
         try:
             cells = [Template(entry[field]).substitute(values) for field in fields]
-        except (KeyError, ValueError) as error:
+        except (KeyError, TypeError, ValueError) as error:
             known = ", ".join(f"${name}" for name in values)
             raise ValueError(
-                f"{kind} {number} ({entry[fields[0]]}) must name computed values, {known}: {error}"
+                f"{kind} {number} must have the texts {fields} and name computed values, {known}: "
+                f"{error!r} in {entry!r}"
             ) from None
         rows.append(tuple(map(typeset, cells)))
     return rows
@@ -269,7 +266,7 @@ def _table_4_1() -> dict[str, str]:
     longer, clean = (results.read(name) for name in ("longer", "clean"))
     units = {row["units"]: row for row in results.read("hidden-units")["rows"]}
     sizes = {row["width"]: row for row in results.read("window-sizes")["rows"]}
-    one = state["21"]["errors"]["test"]
+    test = state["21"]["errors"]["test"]
     others = {
         "test": "test",
         "by_training": "test by training deviation",
@@ -294,8 +291,8 @@ def _table_4_1() -> dict[str, str]:
         "other_units": "; ".join(f"{k}: {_pair(r)}" for k, r in units.items() if k != printed),
         **{name: _triple(_medians(state, column)) for name, column in others.items()},
         **{f"size_{w}": _pair(sizes[w], weight) for w in (41, 81)},
-        "networks": str(len(one)),
-        **{f.__name__: significant(f(one), 2) for f in (np.median, min, max)},
+        "networks": str(len(test)),
+        **{f.__name__: significant(f(test), 2) for f in (np.median, min, max)},
     }
 
 

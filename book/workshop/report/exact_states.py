@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import integer, number, seed_number, shaped
+from ddlib._check import shaped
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from ddlib.trajectories import MOTION_SECONDS, pick_and_place
 
@@ -28,14 +28,13 @@ DESCENT = {"rate": RATE, "momentum": MOMENTUM, "warm_up": WARM_UP, "epochs": EPO
 
 def random_states(samples: int = SAMPLES, seed: int = 0, radius: float = RADIUS) -> np.ndarray:
     """States drawn uniformly from the hypercube, shape (samples, joint, 3)."""
-    size = (integer("samples", samples, 1), 2, 3)
-    number("radius", radius, 0.0, open_low=True)
-    return np.random.default_rng(seed_number("seed", seed)).uniform(-radius, radius, size)
+    size = (samples, 2, 3)
+    return np.random.default_rng(seed).uniform(-radius, radius, size)
 
 
 def states_along(extents_deg, samples: int = SAMPLES, duration=MOTION_SECONDS) -> np.ndarray:
     """States along a pick-and-place motion, equally spaced in time, shape (samples, joint, 3)."""
-    step = number("duration", duration, 0.0, open_low=True) / integer("samples", samples, 2)
+    step = duration / samples
     return np.stack(pick_and_place(extents_deg, np.arange(samples) * step, duration), -1)
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ddlib._check import finite_array, number
+from ddlib._check import finite_array
 from ddlib.analysis import basis, content
 from ddlib.learning import TorqueModel
 from ddlib.simulation import LOG_STEP
@@ -15,8 +15,6 @@ from ddlib.simulation import LOG_STEP
 def with_jerk(states) -> np.ndarray:
     """States ``(..., time, joint, 3)`` with the acceleration's central differences as a fourth."""
     states = finite_array("states", states, 3)
-    if states.ndim < 3 or states.shape[-3] < 2:
-        raise ValueError(f"states must have shape (..., time, joint, 3), got {states.shape}")
     jerk = np.gradient(states[..., 2], LOG_STEP, axis=-2)
     return np.concatenate([states, jerk[..., None]], -1)
 
@@ -56,8 +54,6 @@ def decoded(features, target, held_out, answer, ridge: float = 1e-6) -> np.ndarr
 def decoded_sign(features, target, held_out, answer, ridge: float = 1e-6) -> np.ndarray:
     """How often a linear probe tells the sign of quantities (balanced accuracy, chance 0.5)."""
     target, answer = finite_array("target", target), finite_array("answer", answer)
-    if ((answer > 0).all(0) | (answer <= 0).all(0)).any():
-        raise ValueError("answer must have both signs in each quantity")
     read = _probe(features, np.where(target > 0, 1.0, -1.0), held_out, ridge) > 0
     up = answer > 0
     return 0.5 * ((read & up).sum(0) / up.sum(0) + (~read & ~up).sum(0) / (~up).sum(0))
@@ -67,12 +63,6 @@ def _probe(features, target, held_out, ridge):
     features, held_out = (
         finite_array(name, x) for name, x in (("features", features), ("held_out", held_out))
     )
-    number("ridge", ridge, 0.0)
-    if features.ndim != 2 or target.ndim != 2 or len(features) != len(target):
-        raise ValueError(
-            "features and target must have shapes (cases, features) and (cases, quantities), "
-            f"got {features.shape} and {target.shape}"
-        )
     centre, size = features.mean(0), features.std(0)
     size = np.where(size > 0, size, 1)
     x, new = (features - centre) / size, (held_out - centre) / size

@@ -46,8 +46,8 @@ def _make(name: str, code: str) -> None:
 
 def _quietly(name: str, code: str) -> None:
     """`_make` in a process of its own: the bars of several would disturb each other."""
-    said = io.StringIO()
-    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+    output = io.StringIO()
+    with contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
         _make(name, code)
 
 
@@ -75,8 +75,8 @@ def _side_by_side(codes: dict[str, str], jobs: int) -> None:
             else:
                 tqdm.write(f"==> {name}: {_made_by(name)['seconds']:.0f} s")
     if failed:
-        said = "\n".join(f"{name}: {text}" for name, text in failed.items())
-        raise RuntimeError(f"failed: {', '.join(failed)}; the others are written\n{said}")
+        reasons = "\n".join(f"{name}: {text}" for name, text in failed.items())
+        raise RuntimeError(f"failed: {', '.join(failed)}; the others are written\n{reasons}")
 
 
 def _made_by(name: str) -> dict:

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import platform
 from functools import cache, lru_cache
 from importlib.metadata import version
@@ -22,6 +21,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ddlib._files import write_whole
 from ddlib.learning import TorqueModel
 from ddlib.setups import COURSE, STATE_FEEDBACK
 from workshop import BOOK
@@ -43,11 +43,7 @@ def stamp(seconds: float) -> dict:
 
 def write_json(path: Path, content: dict) -> None:
     """Write a JSON file in one step, so that an interrupted run leaves no half file."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(path.name + ".part")
-    text = json.dumps(_plain(content), indent=1, allow_nan=False)
-    temporary.write_text(text + "\n", encoding="utf-8")
-    os.replace(temporary, path)
+    write_whole(path, json.dumps(_plain(content), indent=1, allow_nan=False) + "\n")
 
 
 def _plain(value):

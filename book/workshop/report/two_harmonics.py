@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import integer, seed_number, shaped
 from ddlib.setups import STATE_FEEDBACK, Setup
 from ddlib.simulation import CONTROL_STEP, LOG_STEP, REST, Recording, follow
 from ddlib.trajectories import (
@@ -40,9 +39,9 @@ def _two_harmonics(extents_deg, second_deg, t, order: int = ORDER) -> Trajectory
     They rest at zero before 0 s and from 3 s on; for ``rho = 0`` they are the paper's family.
     """
     first = pick_and_place(extents_deg, t)
-    rho = np.deg2rad(shaped("second_deg", second_deg, np.shape(extents_deg)))
+    rho = np.deg2rad(second_deg)
     t = np.asarray(t, dtype=float)
-    omega = integer("order", order, 2) * np.pi / MOTION_SECONDS
+    omega = order * np.pi / MOTION_SECONDS
     moving = (t >= 0) & (t < MOTION_SECONDS)
     sine, cosine = (f(omega * t) * moving for f in (np.sin, np.cos))
     second = (-sine, -omega * cosine, omega**2 * sine)
@@ -51,8 +50,8 @@ def _two_harmonics(extents_deg, second_deg, t, order: int = ORDER) -> Trajectory
 
 def _second_amplitudes(order: int = ORDER, seed: int = 0) -> np.ndarray:
     """Amplitudes of the second sine for the six runs, degrees, shape (6, 2)."""
-    most = SHARE * MAX_EXTENT_DEG / integer("order", order, 2) ** 2
-    draw = np.random.default_rng(seed_number("seed", seed))
+    most = SHARE * MAX_EXTENT_DEG / order**2
+    draw = np.random.default_rng(seed)
     return draw.uniform(-most, most, APPENDIX_I.shape)
 
 

@@ -202,7 +202,3 @@ export function scaledWindow({ net, inputs }, window) {
 // Torques (N m) of output activities.
 export const torqueOfOutput = ({ outputs: { low, gain, first } }, output) =>
   JOINTS.map((j) => low[j] + (output[j] - first) / gain[j]);
-
-// Torques (N m) for a window of positions (rad), oldest first, joint by joint.
-const torqueOfWindow = (model, window) =>
-  torqueOfOutput(model, activity(model.net, scaledWindow(model, window)).output);

@@ -87,8 +87,8 @@ class Card:
         """
         if reading not in self.readings:
             return self
-        kept = {k: row for k, row in self.rows.items() if _reading(k) in (reading, "")}
-        return replace(self, rows=kept)
+        rows = {k: row for k, row in self.rows.items() if _reading(k) in (reading, "")}
+        return replace(self, rows=rows)
 
     def verdict(self, verdict_of: Callable = attrgetter("verdict")) -> str:
         """The card's word, of `WORDS`, by the written verdicts or by another function of a row."""

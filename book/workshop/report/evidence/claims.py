@@ -69,8 +69,8 @@ says what is its own. So one sentence of the paper is one entry, whatever it is 
         with: {width: 21}
         verdict: undecided
 
-``{width}`` in ``id`` and ``claim`` is an argument of ``with``. A ``reading`` of section 4 other than
-the entry's is the argument ``setup``, and is named at the end of both: the last one is
+``{width}`` in ``id`` and ``claim`` is an argument of ``with``. A ``reading`` of section 4 other
+than the entry's is the argument ``setup``, and is named at the end of both: the last one is
 "asymptote-21-damping".
 """
 
@@ -145,10 +145,6 @@ _PLACE = re.compile(
 )
 
 
-class _MeasureError(RuntimeError):
-    """A claim's measuring function failed; the message names the claim."""
-
-
 @dataclass(frozen=True)
 class Claim:
     """One entry of the claims file; see the module for the fields."""
@@ -177,22 +173,24 @@ class Claim:
                 raise ValueError(f"{name} of claim {self.id!r} must be text, got {value!r}")
         self.place()
         one_of(f"verdict of claim {self.id!r}", self.verdict, VERDICTS)
-        testable = self.verdict != "not testable"
-        if testable != bool(self.band) or (testable and not self.is_measured):
-            raise ValueError(
-                f"claim {self.id!r} must have measure and band, or be 'not testable' without band"
-            )
-        if self.measure and self.find:
-            raise ValueError(f"claim {self.id!r} must have measure or find, not both")
-        if self.loose and self.verdict in ("by construction", "not testable"):
-            raise ValueError(f"claim {self.id!r} is {self.verdict}: it must not have loose")
-        if self.again and not self.arm:
-            raise ValueError(
-                f"claim {self.id!r} must name the arm on which it judges {self.again!r} again"
-            )
         one_of(f"after of claim {self.id!r}", self.after, ("", "trial", "change", "trial, change"))
-        for bounds in (self.band, self.loose):
-            self._check_band(bounds)
+        testable = self.verdict != "not testable"
+        if testable != bool(self.band) or (testable and bool(self.measure) == bool(self.find)):
+            raise ValueError(
+                f"claim {self.id!r} must have measure or find, and band, or be 'not testable' "
+                "without band"
+            )
+        for bounds in filter(None, (self.band, self.loose)):
+            if set(bounds) not in ({"factor"}, {"is"}, {"from"}, {"to"}, {"from", "to"}):
+                raise ValueError(
+                    f"band of claim {self.id!r} must be factor, is, from, to, or from and to, "
+                    f"got {sorted(bounds)}"
+                )
+            if "factor" in bounds and (isinstance(self.printed, str) or not bounds["factor"] >= 1):
+                raise ValueError(
+                    f"factor of claim {self.id!r} must be at least 1 and the printed value a "
+                    f"number, got {bounds['factor']} and {self.printed!r}"
+                )
 
     @property
     def is_measured(self) -> bool:
@@ -204,19 +202,6 @@ class Claim:
         rest = {name: value for name, value in self.arguments.items() if name != "setup"}
         key = json.dumps([self.measure, self.find, rest], sort_keys=True)
         return key, self.arguments.get("setup", STATE_FEEDBACK.name)
-
-    def _check_band(self, bounds):
-        kinds = set(bounds)
-        if kinds and kinds not in ({"factor"}, {"is"}, {"from"}, {"to"}, {"from", "to"}):
-            raise ValueError(
-                f"band of claim {self.id!r} must be factor, is, from, to, or from and to, "
-                f"got {sorted(kinds)}"
-            )
-        if "factor" in kinds and (isinstance(self.printed, str) or not bounds["factor"] >= 1):
-            raise ValueError(
-                f"factor of claim {self.id!r} must be at least 1 and the printed value a number, "
-                f"got {bounds['factor']} and {self.printed!r}"
-            )
 
     def place(self) -> tuple[str, int, int]:
         """Where the claim stands: key of `SECTIONS`, subsection, number of a table or figure.
@@ -244,7 +229,7 @@ class Claim:
             return _measured(json.dumps([self.measure, self.find, self.arguments]))
         except Exception as error:
             given = ", ".join(f"{name}={value!r}" for name, value in self.arguments.items())
-            raise _MeasureError(
+            raise RuntimeError(
                 f"claim {self.id!r} could not be measured by {self.measure or 'find'}({given}): "
                 f"{type(error).__name__}: {error}"
             ) from error
@@ -263,24 +248,20 @@ class Claim:
         if not self.band:
             return "not testable"
         shares = self.shares()
-        return verdict_of_shares(shares) if shares else self.verdict_for(self.measured().value)
+        return verdict_of_shares(shares) if shares else self._verdicts([self.measured().value])[0]
 
     def shares(self) -> dict[str, float]:
         """Share of the replicates in which each verdict comes out; empty without replicates."""
         replicates = self.measured().replicates if self.band else None
-        return {} if replicates is None else shares_of_draws(self._verdicts_for(replicates))
+        return {} if replicates is None else shares_of_draws(self._verdicts(replicates))
 
-    def verdict_for(self, value: float) -> str:
-        """The verdict that the bands give for one value."""
-        return str(self._verdicts_for([value])[0])
-
-    def _verdicts_for(self, values) -> np.ndarray:
-        """The verdicts that the bands give for many values."""
+    def _verdicts(self, values) -> list[str]:
+        """The verdict that the bands give for each of some values."""
         values = np.asarray(values)
         best = "by construction" if self.verdict == "by construction" else "reproduced"
         nearly = self._within(self.loose, values) if self.loose else False
         rest = np.where(nearly, "qualitative", "not reproduced")
-        return np.where(self._within(self.band, values), best, rest)
+        return np.where(self._within(self.band, values), best, rest).tolist()
 
     def edges(self) -> list[float]:
         """Values at which the verdict turns."""
@@ -361,7 +342,7 @@ class Printed(float):
 
 
 class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):
-    """Numbers with a point as `Printed`; the parser in C, seven times as fast, where there is one."""
+    """Numbers with a point are `Printed`; the parser in C is seven times as fast, where it is."""
 
 
 _Loader.add_constructor("tag:yaml.org,2002:float", lambda _, node: Printed(node.value))
@@ -379,7 +360,7 @@ def _parsed(text: str) -> tuple[Claim, ...]:
     for fields in _entries({"claims": yaml.load(text, _Loader)}, {}):
         try:
             claim = _claim(**fields)
-        except (TypeError, LookupError) as error:
+        except (TypeError, LookupError, StopIteration) as error:
             raise ValueError(
                 f"claim {fields.get('id')!r} must have the known fields: {error}"
             ) from None
@@ -399,8 +380,8 @@ def _entries(entry: Mapping, around: Mapping) -> Iterator[dict]:
     inner = fields.pop("claims", None)
     if inner is None:
         yield fields
-    for each in inner or ():
-        yield from _entries(each, fields)
+    for claim in inner or ():
+        yield from _entries(claim, fields)
 
 
 def _claim(*, id: str, claim: str, refuted: str, reading: str = "", **fields) -> Claim:
@@ -409,12 +390,11 @@ def _claim(*, id: str, claim: str, refuted: str, reading: str = "", **fields) ->
     end, words = _READINGS[reading]
     if reading:
         arguments["setup"] = reading
-    edges = [f"{edge:,g}" for edge in (fields.get("loose") or fields.get("band") or {}).values()]
-    bounds = iter(edges)
+    edges = iter((fields.get("loose") or fields.get("band") or {}).values())
     return Claim(
         id=id.format(**arguments) + end,
         claim=claim.format(**arguments) + words,
-        refuted=re.sub(r"\{(.*?)\}", lambda braces: braces[1] or next(bounds), refuted),
+        refuted=re.sub(r"\{(.*?)\}", lambda words: words[1] or f"{next(edges):,g}", refuted),
         arguments=arguments,
         **fields,
     )

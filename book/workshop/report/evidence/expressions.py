@@ -26,11 +26,11 @@ below ``paired`` belong to the same members and are drawn together; ``nested: tr
 members of each member, too. A cell of one member, or below ``fixed``, is not drawn. ``of`` gives
 names to cells, in the order in which they are drawn; what only the text names is not drawn.
 
-The text tells ``{0}``, ``{1}``, … or a name: a cell's median to two digits. After a colon may stand
-another statistic (`_TOLD`), then digits, "power" or a format of Python: ``{0:mean .0%}``. Further
-there are ``{value}``, what is judged; ``{each}``, all that the outermost form compares, of which
-``{each[0]}`` is the first; ``{draws}``, the value in all draws; and of each ``least`` that goes
-through values with ``for``, what it is and where: ``{least[0]} at {at[0]}``.
+The text shows ``{0}``, ``{1}``, … or a name: a cell's median to two digits. After a colon may stand
+another statistic (`_STATISTICS`), then digits, "power" or a format of Python: ``{0:mean .0%}``.
+Further there are ``{value}``, what is judged; ``{each}``, all that the outermost form compares, of
+which ``{each[0]}`` is the first; ``{draws}``, the value in all draws; and of each ``least`` that
+goes through values with ``for``, what it is and where: ``{least[0]} at {at[0]}``.
 """
 
 from __future__ import annotations
@@ -87,12 +87,12 @@ _FORMS = {
     "least": lambda *parts: np.min(parts, axis=0),
     "furthest": _furthest,  # from 1
     "apart": lambda *parts: np.exp(np.max(np.abs(np.log(parts)), axis=0)),  # a factor, up or down
-    "excess": lambda one, *others: one - np.max(others, axis=0),
+    "excess": lambda first, *others: first - np.max(others, axis=0),
 }
 
-# What the text tells of a cell. Three more: ``spread``, the median with the range; ``all``, each
+# What the text shows of a cell. Three more: ``spread``, the median with the range; ``all``, each
 # member; ``p``, the chance that a member is as large as the mean of the first cell.
-_TOLD = {
+_STATISTICS = {
     "median": np.median,
     "mean": np.mean,
     "root": lambda cell: np.sqrt(np.mean(cell)),  # of the mean
@@ -119,7 +119,7 @@ class _Expression:
         self.names, self.arguments = rest.pop("of", {}), arguments
         # in the order in which they are drawn: those with a name first
         self.groups: dict[str, list] = {name: [] for name in self.names}
-        self.told: dict[str, np.ndarray] = {}  # all cells, as {0}, {1}, ... tell them
+        self.cells: dict[str, np.ndarray] = {}  # all of them, as {0}, {1}, ... in the text
         self.parts: list[Callable] | None = None  # what the outermost form compares
         self.leasts: list[dict] = []  # what each least with `for` compares, by label
         self.statistic = self._compiled(rest, arguments, "")
@@ -146,7 +146,7 @@ class _Expression:
         return Measured(value, self._words(value, replicates), replicates)
 
     def _words(self, value, replicates) -> str:
-        first = next(iter(self.told.values()))
+        first = next(iter(self.cells.values()))
         words = {
             name: _Words(self._cell(c, self.arguments), first) for name, c in self.names.items()
         }
@@ -157,7 +157,7 @@ class _Expression:
         ]
         words["least"] = [_Words(least) for least, _ in leasts]
         words["at"] = [at for _, at in leasts]
-        cells = (_Words(cell, first) for cell in self.told.values())
+        cells = (_Words(cell, first) for cell in self.cells.values())
         return self.text.format(*cells, **self.arguments, **words)
 
     def _compiled(self, entry, names: dict, group: str) -> Callable:
@@ -180,23 +180,27 @@ class _Expression:
             known = ", ".join([*_FORMS, "best", "rising", *_POOLED, *_CELLS, "paired", _FIXED])
             raise ValueError(f"form must be one of {known}, got {form!r}")
         outermost, self.parts = self.parts is None, self.parts or []
-        each = [self._compiled(one, env, group) for one, env in _several(inner, loop, names)]
+        parts = [self._compiled(part, env, group) for part, env in _several(inner, loop, names)]
         if outermost:
-            self.parts = each
+            self.parts = parts
         labels = _values(*loop.values(), names) if loop else ()
         if form == "least" and loop:
-            self.leasts.append(dict(zip(labels, each)))
+            self.leasts.append(dict(zip(labels, parts)))
         if form in _FORMS:
-            return lambda drawn: _FORMS[form](*np.broadcast_arrays(*(part(drawn) for part in each)))
+            return lambda drawn: _FORMS[form](
+                *np.broadcast_arrays(*(part(drawn) for part in parts))
+            )
         if form == "best":
-            return lambda drawn: np.array(labels)[np.argmin([part(drawn) for part in each], axis=0)]
-        return lambda drawn: _rising({k: part(drawn) for k, part in zip(labels, each)}, order)
+            return lambda drawn: np.array(labels)[
+                np.argmin([part(drawn) for part in parts], axis=0)
+            ]
+        return lambda drawn: _rising({k: part(drawn) for k, part in zip(labels, parts)}, order)
 
     def _leaf(self, pool: Callable, entry, names: dict, group: str) -> Callable:
         """A function of the drawn groups that pools one cell, which joins its group."""
         cell = np.asarray(self._cell(entry, names))
         key = entry if self._named(entry) else _filled(json.dumps(entry), names)
-        self.told.setdefault(key, cell)
+        self.cells.setdefault(key, cell)
         if cell.size == 1 or group == _FIXED:
             value = pool(cell[None])
             return lambda drawn: value
@@ -220,7 +224,7 @@ class _Expression:
         more = dict(entry)
         loop = more.pop("for", {})
         ((form, inner),) = more.items()
-        cells = [np.asarray(self._cell(one, env)) for one, env in _several(inner, loop, names)]
+        cells = [np.asarray(self._cell(part, env)) for part, env in _several(inner, loop, names)]
         fewest = min((len(cell) for cell in cells if cell.ndim), default=0)
         return _CELLS[form](*(cell[:fewest] if cell.ndim else cell for cell in cells))
 
@@ -230,7 +234,7 @@ def _several(inner, loop: Mapping, names: dict) -> list[tuple]:
     if loop:
         ((name, values),) = loop.items()
         return [(inner, {**names, name: value}) for value in _values(values, names)]
-    return [(one, names) for one in (inner if isinstance(inner, list) else [inner])]
+    return [(part, names) for part in (inner if isinstance(inner, list) else [inner])]
 
 
 def _values(values, names: dict) -> list:
@@ -303,14 +307,14 @@ def _at(value, rest: str, path: str):
         else:
             if re.fullmatch(r"-?\d*:-?\d*", head):
                 places = slice(*(int(end) if end else None for end in head.split(":")))
-                return [_at(one, tail, path) for one in value[places]]
+                return [_at(item, tail, path) for item in value[places]]
             if head.lstrip("-").isdigit() and -len(value) <= int(head) < len(value):
                 return _at(value[int(head)], tail, path)
             known = f"':' and places below {len(value)}"
     else:
         known = "nothing: a number stands there"
     if "|" in head:
-        return np.sum([_at(value, f"{one}/{tail}".rstrip("/"), path) for one in head.split("|")], 0)
+        return np.sum([_at(value, f"{key}/{tail}".rstrip("/"), path) for key in head.split("|")], 0)
     raise ValueError(f"path must lead into a result, got {path!r}: at {rest!r} there is {known}")
 
 
@@ -318,7 +322,7 @@ def _at(value, rest: str, path: str):
 
 
 class _Words:
-    """Numbers that a template tells by what stands after the colon."""
+    """Numbers that a template shows by what stands after the colon."""
 
     def __init__(self, values, first=None):
         self.values, self.first = np.asarray(values), first
@@ -331,20 +335,20 @@ class _Words:
             return ", ".join(_number(value, rest) for value in self.values)
         if name == "p":
             return format(p_value(self.first.mean(), self.values, "more"), rest)
-        if name in _TOLD:
-            return _number(_TOLD[name](self.values), rest)
+        if name in _STATISTICS:
+            return _number(_STATISTICS[name](self.values), rest)
         return _number(
             self.values.item() if self.values.ndim == 0 else np.median(self.values), spec
         )
 
 
 class _Several(list):
-    """Numbers that a template tells one after another, or a statistic of them."""
+    """Numbers that a template shows one after another, or a statistic of them."""
 
     def __format__(self, spec: str) -> str:
-        if spec.partition(" ")[0] in _TOLD:
-            return format(_Words([one.values for one in self]), spec)
-        return ", ".join(format(one, spec) for one in self)
+        if spec.partition(" ")[0] in _STATISTICS:
+            return format(_Words([words.values for words in self]), spec)
+        return ", ".join(format(words, spec) for words in self)
 
 
 def _number(value, form: str) -> str:

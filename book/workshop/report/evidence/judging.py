@@ -79,10 +79,10 @@ def _numbers(measured: Measured) -> list[float]:
     return [float(measured.value), float(draws.mean()), low, high]
 
 
-def _same(claim: Claim, kept: Sequence[float], now: Sequence[float]) -> bool:
+def _same(claim: Claim, before: Sequence[float], now: Sequence[float]) -> bool:
     """Whether numbers of a claim are the kept ones but for rounding."""
     most = {"rel_tol": _EXACT if claim.find else _MEASURED, "abs_tol": _ROUNDING.get(claim.id, 0.0)}
-    return len(kept) == len(now) and all(math.isclose(a, b, **most) for a, b in zip(kept, now))
+    return len(before) == len(now) and all(math.isclose(a, b, **most) for a, b in zip(before, now))
 
 
 def _entry(claim: Claim) -> str:
@@ -96,9 +96,9 @@ def _parts(entry: str) -> tuple[str, list[float]]:
     return verdict, [float(number) for number in numbers.split()]
 
 
-def _changes(claims: Iterable[Claim], kept: Mapping[str, str]) -> list[str]:
+def changes(claims: Iterable[Claim], before: Mapping[str, str]) -> list[str]:
     """A line "id: old -> new" for each claim that does not measure or get what was kept."""
-    lines, gone = [], dict(kept)
+    lines, gone = [], dict(before)
     for claim in claims:
         old, new = gone.pop(claim.id, "-"), _entry(claim)
         (verdict, numbers), (fresh, measured) = _parts(old), _parts(new)
@@ -107,9 +107,9 @@ def _changes(claims: Iterable[Claim], kept: Mapping[str, str]) -> list[str]:
     return lines + [f"{name}: {old} -> -" for name, old in gone.items()]
 
 
-def _main(arguments=None) -> int:
+def main(arguments=None) -> int:
     """List the verdicts of all judged claims; 1 if a written one is wrong."""
-    parser = argparse.ArgumentParser(description=_main.__doc__)
+    parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("--write", action="store_true", help="keep what is measured, tell changes")
     options = parser.parse_args(arguments)
     measured = [claim for claim in load() if claim.is_measured]
@@ -119,9 +119,9 @@ def _main(arguments=None) -> int:
     if options.write:
         path = results.FOLDER / f"{_NAME}.json"
         before = results.read(_NAME).get("claims", {}) if path.is_file() else {}
-        changes = _changes(measured, before)
-        heading = f"changed against what was kept: {len(changes)} of {len(measured)}"
-        print(heading, *changes, sep="\n")
+        changed = changes(measured, before)
+        heading = f"changed against what was kept: {len(changed)} of {len(measured)}"
+        print(heading, *changed, sep="\n")
         now = {claim.id: _entry(claim) for claim in measured}
         results.write_json(path, {"of results": results._digest(results.FOLDER), "claims": now})
     wrong = [claim.id for claim in judged if claim.judge() != claim.verdict]
@@ -129,5 +129,5 @@ def _main(arguments=None) -> int:
     return bool(wrong)
 
 
-if __name__ == "__main__":
-    raise SystemExit(_main())
+if __name__ == "_main__":
+    raise SystemExit(main())

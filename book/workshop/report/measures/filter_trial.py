@@ -70,13 +70,7 @@ def calibrated(what: str = "inertia", width: int = 21, path: str = "gains") -> M
     nulls = (_entries(what, np.array(x[path]), arm_gains())[0] for x in matched(entry).values())
     chance = max(near_by_chance(null, real, true) for null in nulls)
     text = f"{compared} {_UNITS[what]}; as near by chance: p {chance:.2f}"
-    return judged(lambda each: _off(each, true), real, text=text)
-
-
-def off_singly(what: str = "inertia", width: int = 21) -> np.ndarray:
-    """The same of each network by itself: how far its worst entry is from the arm's."""
-    entries, true, _ = _entries(what, np.array(row(width)["real"]["gains"]), arm_gains())
-    return np.abs(entries / true - 1).max(-1)
+    return judged(lambda gains: _off(gains, true), real, text=text)
 
 
 def calibrated_networks(width: int = 21, setup: str = JOINT_DAMPING.name) -> Measured:
@@ -84,7 +78,7 @@ def calibrated_networks(width: int = 21, setup: str = JOINT_DAMPING.name) -> Mea
     windows, _ = cases(committed.training(setup), width)
     gains = gains_of(committed.networks(width, setup), windows, LOG_STEP).whole
     real, true, compared = _entries("inertia", gains, arm_gains(setup))
-    return judged(lambda each: _off(each, true), real, text=f"{compared} {_UNITS['inertia']}")
+    return judged(lambda gains: _off(gains, true), real, text=f"{compared} {_UNITS['inertia']}")
 
 
 def response(width: int = 21) -> Measured:
@@ -95,10 +89,12 @@ def response(width: int = 21) -> Measured:
     study = results.read("filter-responses")
     numbers, (cell, own) = study["trajectories"], responses(width)
     pairs = list(zip(numbers, np.median(cell["network"], 0), own))
-    text = ", ".join(f"{one:.1f} on trajectory {k} (arm {arm:.1f})" for k, one, arm in pairs)
-    filters = ", ".join(f"{one:.1f}" for one in np.median(cell["filter"], 0))
+    text = ", ".join(
+        f"{network:.1f} on trajectory {k} (arm {arm:.1f})" for k, network, arm in pairs
+    )
+    filters = ", ".join(f"{linear:.1f}" for linear in np.median(cell["filter"], 0))
     text += f" kg m²; as linear filters {filters}"
-    return judged(lambda each: _off(each, own), cell["network"], text=text)
+    return judged(lambda drawn: _off(drawn, own), cell["network"], text=text)
 
 
 def responses(width: int = 21, motion: str = "slow") -> tuple[dict, np.ndarray]:
@@ -107,7 +103,7 @@ def responses(width: int = 21, motion: str = "slow") -> tuple[dict, np.ndarray]:
     Along the motion as it was "recorded", swings included, or a "slow" sine as it was desired.
     """
     study = results.read("filter-responses")[motion]
-    cell = {way: np.array(each) for way, each in study["windows"][str(width)].items()}
+    cell = {way: np.array(values) for way, values in study["windows"][str(width)].items()}
     return cell, np.array(study["arm"])
 
 
@@ -127,5 +123,5 @@ def _off(gains, true) -> np.ndarray:
 
 def near_by_chance(null, real, true) -> float:
     """p-value of gains as near to the arm's (`true`) as the `real` ones, in their worst entry."""
-    each = np.asarray(null)[:, None]  # a draw at a time
-    return p_value(_off(np.asarray(real), true), _off(each, true), "less")
+    draws = np.asarray(null)[:, None]  # each by itself
+    return p_value(_off(np.asarray(real), true), _off(draws, true), "less")

@@ -63,7 +63,7 @@ def _named(width: int, name: str, layer: str, setup: str) -> tuple[np.ndarray, n
     def has(f):
         return np.isin(classify(f), name.split("|"))
 
-    cells = [_made(has, one, [width], setup) for one in layer.split("|")]
+    cells = [_made(has, part, [width], setup) for part in layer.split("|")]
     return tuple(np.concatenate([cell[k][0] for cell in cells], -1) for k in (0, 1))
 
 
@@ -119,15 +119,15 @@ def follow(width: int = 21, name: str = "acceleration", layer: str = "direct") -
     states = true_states(training, STATE_FEEDBACK).reshape(-1, 2, 3)
     f = getattr(committed.networks(width).weights, LAYERS[layer])
     strongest = filter_responses(f, cases(training, width)[0], states).strongest
-    each = (strongest == QUANTITIES.index(name)).mean((1, 2))
+    following = (strongest == QUANTITIES.index(name)).mean((1, 2))
     counts = ", ".join(f"{n} {(strongest == k).sum()}" for k, n in enumerate(QUANTITIES))
-    return judged(mean, each, text=f"best correlated with {counts} of {strongest.size}")
+    return judged(mean, following, text=f"best correlated with {counts} of {strongest.size}")
 
 
 def rougher(wide: int = 41, narrow: int = 21, setup: str = STATE_FEEDBACK.name) -> Measured:
     """Ratio of the median roughness of hidden filters at two window sizes."""
     cells, before = _made(roughness, "hidden", (wide, narrow), setup)
-    now, then = ([significant(np.median(x), 2) for x in each] for each in (cells, before))
+    now, then = ([significant(np.median(x), 2) for x in xs] for xs in (cells, before))
     text = f"roughness {now[0]} at {wide}, {now[1]} at {narrow}; "
     text += f"before training {then[0]} and {then[1]}"
     return judged(lambda a, b: median(a) / median(b), *cells, text=text)

@@ -256,8 +256,8 @@ def outside_the_span(taken: int = 12, epochs: int = 100) -> Measured:
         step = 0.9 * step - 0.1 * error @ jacobian(now, x).reshape(error.size, -1)
         now = with_change(now, step)
     change, windows = now.rows - start.rows, with_ones(x)
-    left = change - np.linalg.lstsq(windows.T, change.T, rcond=None)[0].T @ windows
-    share = float(np.linalg.norm(left) / np.linalg.norm(change))
+    residual = change - np.linalg.lstsq(windows.T, change.T, rcond=None)[0].T @ windows
+    share = float(np.linalg.norm(residual) / np.linalg.norm(change))
     return Measured(share, f"{scientific(share)}, {taken} windows of {windows.shape[1] - 1} inputs")
 
 
@@ -304,12 +304,12 @@ def short_window(bits: tuple = (16, 15, 14, 13, 12, 11), more: float = 1.1) -> M
     In bits a turn: where the error at 11 is `more` times that at 21.
     """
     ratios = []
-    for each in bits:
-        rounded = Quantisation(2 * np.pi / 2**each)
+    for count in bits:
+        rounded = Quantisation(2 * np.pi / 2**count)
         effects = replace(STATE_FEEDBACK.effects, encoder=(rounded,))
         run = split(replace(STATE_FEEDBACK, effects=effects).record())[0]
         ratios.append(acceleration_error(run, 11) / acceleration_error(run, 21))
-    turn = turns_at([2.0**-each for each in bits], ratios, more)
+    turn = turns_at([2.0**-count for count in bits], ratios, more)
     text = f"{significant(ratios[0], 2)} times the error at 21 with the assumed {bits[0]} bits"
     text += f"; {significant(more, 2)} times with {-np.log2(turn):.1f} bits"
     return Measured(float(-np.log2(turn)), text)

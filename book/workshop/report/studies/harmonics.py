@@ -37,8 +37,6 @@ def _summary(model: TorqueModel, windows, states) -> dict:
     layers: dict = {}
     for layer, attribute in LAYERS.items():
         f = getattr(model.weights, attribute)
-        if f.ndim != 4:
-            raise ValueError(f"model must be an ensemble, got weights of shape {f.shape}")
         names, follows = classify(f), filter_responses(f, windows, states)
         layers[layer] = {
             "classes": {name: (names == name).mean((1, 2)) for name in CLASSES},
