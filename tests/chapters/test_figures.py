@@ -317,7 +317,9 @@ FIGURES = {
         shows=[[*xy([1, 2], [3, 4]), *xy([1] * 3, [7] * 3)], [[(5, 6)] * 2, [(5, 5), (6, 6)]]],
         log="xy",
     ),
-    "verdicts": figure(partial(verdict.sections_figure, {"section 2": {"reproduced": 3, "refuted": 1}})),
+    "verdicts": figure(
+        partial(verdict.sections_figure, {"section 2": {"reproduced": 3, "refuted": 1}})
+    ),
     "maps": figure(
         partial(maps, EDGE, SQUARES, ("x, °", "y, °", "error"), "Maps.", mark=(20.0, 30.0)),
         shows=[[[(20, 30)]]] * 3, log=None, upon="#ffffff",
