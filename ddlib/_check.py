@@ -157,43 +157,21 @@ def _listed(known) -> str:
     return ", ".join(names)
 
 
-# What a kind of object has, and how messages speak of it
-_KINDS = {
-    "Arm": ("an Arm, with two joints", "inverse_dynamics"),
-    "SerialArm": ("a SerialArm", "links", "joints"),
-    "Link": ("a Link(mass, length, com, inertia)", "mass", "length", "com", "inertia"),
-    "SpatialLink": ("a SpatialLink", "twist_deg", "com", "inertia"),
-    "Effects": ("Effects, as Effects(friction=(ViscousFriction(...),))", "friction_torque"),
-    "PID": ("a PID, as pd(kp, kd) makes it", "kp", "ki", "kd"),
-    "Controller": ("a controller with a start method, as pd(kp, kd) makes it", "start"),
-    "StateSpace": ("a control.StateSpace, as plant(inertia, viscous) makes it", "ninputs", "A"),
-    "LinearSystem": ("a control.StateSpace or control.TransferFunction", "dt", "ninputs"),
-    "System": ("an InterconnectedSystem, as feedforward_system(...) makes it", "ninputs"),
-    "Recording": ("a Recording, as record(...) makes it", "reference", "q", "tau"),
-    "Setup": ("a Setup, like JOINT_DAMPING", "arm", "effects", "controller"),
-    "TrainingSet": ("a TrainingSet", "x", "y", "inputs"),
-    "Weights": ("Weights, of a TorqueModel its weights", "hidden_weights", "output_bias"),
-    "TorqueModel": ("a TorqueModel", "weights", "inputs", "outputs"),
-    "Scaler": ("a Scaler", "scale", "gain"),
-    "Module": ("a torch.nn.Module, like WindowNetwork", "parameters", "forward"),
-    "Equations": ("Equations, of a recording by_modulation(recording)", "regressor", "torque"),
-    "integer": ("an integer", "__index__"),
-    "row of weights": ("a row of weights", "__len__"),
-}
-
-
-def like(name: str, value, kind: str) -> None:
-    """Refuse what has not what a `kind` of object has."""
-    what, *attributes = _KINDS[kind]
-    if not all(hasattr(value, attribute) for attribute in attributes):
-        raise TypeError(f"{name} must be {what}, got {told(value)}")
-
-
 def instance(name: str, value, *kinds: type) -> None:
     """Refuse what is of none of these classes."""
     if not isinstance(value, kinds):
         names = " or ".join(kind.__name__ for kind in kinds)
         raise TypeError(f"{name} must be of class {names}, got {told(value)}")
+
+
+def series(name: str, values, *kinds: type) -> list:
+    """`values` as a list; TypeError if they are no series, or one is of none of these classes."""
+    if isinstance(values, (str, Mapping)) or not hasattr(values, "__iter__"):
+        raise TypeError(f"{name} must be a series, got {told(values)}")
+    items = list(values)
+    for item in items if kinds else ():
+        instance(name, item, *kinds)
+    return items
 
 
 def function_of(name: str, value, signature: str) -> None:
@@ -223,16 +201,6 @@ def mapping(name: str, value) -> None:
         raise ValueError(f"{name} must hold one item or more, got none")
 
 
-def every(name: str, values, kind: str) -> None:
-    """Refuse what is no series, or a series that holds what is not `like` a kind."""
-    what, *attributes = _KINDS[kind]
-    if isinstance(values, (str, Mapping)) or not hasattr(values, "__iter__"):
-        raise TypeError(f"{name} must be a series, each item {what}, got {told(values)}")
-    for item in values if isinstance(values, (list, tuple)) else ():
-        if isinstance(item, str) or not all(hasattr(item, part) for part in attributes):
-            raise TypeError(f"{name} must hold only what is {what}, got {told(item)}")
-
-
 def pair(name: str, value, low=-np.inf, high=np.inf) -> None:
     """Refuse what is no increasing pair of numbers within `low` to `high`."""
     array = finite_array(name, value)
@@ -243,19 +211,18 @@ def pair(name: str, value, low=-np.inf, high=np.inf) -> None:
         raise ValueError(f"{name} must be an increasing pair{where}, got {told(value)}")
 
 
-def triple(name: str, value) -> None:
-    """Refuse what is no `Trajectory`: positions, velocities and accelerations of one shape."""
+def triple(name: str, value) -> list[np.ndarray]:
+    """Positions, velocities and accelerations of a `Trajectory`, refused unless of one shape."""
     if not isinstance(value, (tuple, list)) or len(value) != 3:
         raise TypeError(
             f"{name} must be a Trajectory of positions, velocities and accelerations, as "
             f"pick_and_place(extents_deg, t) returns it, got {told(value)}"
         )
-    shapes = [finite_array(f"{name}.{part}", x, 2).shape for part, x in zip(_PARTS, value)]
+    arrays = [finite_array(f"{name}.{part}", x, 2) for part, x in zip(("q", "qd", "qdd"), value)]
+    shapes = [array.shape for array in arrays]
     if len(set(shapes)) > 1:
         raise ValueError(f"{name} must have q, qd and qdd of one shape, got {told(shapes)}")
-
-
-_PARTS = ("q", "qd", "qdd")
+    return arrays
 
 
 def cases_of(name: str, value) -> None:
@@ -283,13 +250,6 @@ def along(name: str, value, axis: int, joints: int) -> None:
         raise ValueError(f"{name} must have {joints} joints along axis {axis}, got shape {shape}")
 
 
-def known_options(call: str, options, known: tuple[str, ...]) -> None:
-    """Refuse an option that a call does not have; a TypeError as Python's own."""
-    for name in options:
-        if name not in known:
-            raise TypeError(f"{call} has no option {name!r}; it has {', '.join(known)}")
-
-
 def varies(name: str, torque, advice: str) -> None:
     """Refuse torques (..., cases, joint) of which one joint's never changes."""
     torque = np.asarray(torque)
@@ -300,11 +260,3 @@ def varies(name: str, torque, advice: str) -> None:
             f"{name} must change at each joint, but joint {joint + 1} is "
             f"{torque[..., 0, joint].flat[0] + 0.0:g} throughout: {advice}"
         )
-
-
-def regular(name: str, value) -> None:
-    """Refuse lists of unequal lengths, of which numpy makes no array."""
-    try:
-        np.shape(value)
-    except (TypeError, ValueError):
-        raise TypeError(f"{name} must be a number or an array, got {told(value)}") from None

@@ -9,8 +9,8 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from ddlib import paper
-from ddlib._check import finite_array, integer, like, number, pair, seed_number, text, told
-from ddlib.control import Controller, pd, proportional
+from ddlib._check import finite_array, instance, integer, number, pair, seed_number, text
+from ddlib.control import Controller, as_controller, pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from ddlib.effects import (
     CMU_DD_ARM_II_EFFECTS,
@@ -71,13 +71,9 @@ class Setup:
 
     def __post_init__(self):
         text("name", self.name)
-        if not callable(getattr(self.controller, "start", self.controller)):
-            raise TypeError(
-                "controller must have a start method, as pd(kp, kd) has, or be a function, got "
-                f"{told(self.controller)}"
-            )
-        like("arm", self.arm, "Arm")
-        like("effects", self.effects, "Effects")
+        as_controller(self.controller)
+        instance("arm", self.arm, Arm)
+        instance("effects", self.effects, Effects)
         integer("epochs", self.epochs, 1)
         number("momentum", self.momentum, 0.0, 0.999)
         integer("warm_up", self.warm_up, 0)
@@ -168,7 +164,7 @@ SETUPS = {setup.name: setup for setup in (POSITION_FEEDBACK, STATE_FEEDBACK, JOI
 
 def split(recording: Recording) -> tuple[Recording, Recording]:
     """Training runs 1 to 5 and test run 6 of an Appendix I recording: split by trajectory."""
-    like("recording", recording, "Recording")
+    instance("recording", recording, Recording)
     if recording.q.ndim != 3 or len(recording.q) != len(APPENDIX_I):
         raise ValueError(
             f"recording must hold the six runs of Appendix I, got shape {recording.q.shape}"
@@ -254,8 +250,8 @@ def errors(model: TorqueModel, recording: Recording) -> AppendixErrors:
     (the reference in place of measured positions) and `by_training_deviation` are other readings
     of `test`. `named()` gives all by the names that tables use.
     """
-    like("model", model, "TorqueModel")
-    like("recording", recording, "Recording")
+    instance("model", model, TorqueModel)
+    instance("recording", recording, Recording)
     width = model.weights.width
     training, test = split(recording)
     (x, y), (x6, y6) = cases(training, width), cases(test, width)
@@ -277,8 +273,8 @@ def predict(model: TorqueModel, recording: Recording) -> np.ndarray:
 
     A model that knows its sampling period refuses a recording with another one.
     """
-    like("model", model, "TorqueModel")
-    like("recording", recording, "Recording")
+    instance("model", model, TorqueModel)
+    instance("recording", recording, Recording)
     finite_array("recording.q", recording.q, 2)
     if model.step is not None and abs(recording.step / model.step - 1) > 1e-6:
         raise ValueError(
@@ -304,8 +300,8 @@ def true_states(recording: Recording, setup: Setup, skip: float = 0.0) -> np.nda
     Position (rad), velocity and acceleration, which the setup's arm and friction give from the
     torque. The first `skip` s of the motion, where the transient is, may be left out.
     """
-    like("recording", recording, "Recording")
-    like("setup", setup, "Setup")
+    instance("recording", recording, Recording)
+    instance("setup", setup, Setup)
     motion, (begin, end) = recording.motion, recording.span
     number("skip", skip, 0.0, end - begin - recording.step)
     inside = slice(motion.start + round(skip / recording.step), motion.stop)

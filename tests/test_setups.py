@@ -118,22 +118,6 @@ def test_errors_are_what_their_names_say(recording, trained):
         np.testing.assert_allclose(found[name], value, rtol=1e-9, err_msg=name)
 
 
-def test_refusals(recording):
-    for width, members, words in (
-        (10, 2, "width must be odd"),
-        (103, 2, "record a longer rest"),
-        (11, 0, "members must"),
-    ):
-        with pytest.raises(ValueError, match=words):
-            train_windows(QUICK, recording, width, members, progress=False)
-    with pytest.raises(TypeError, match="whiten must be True or False"):
-        train_windows(replace(QUICK, steps=1), recording, 11, 1, whiten=1, progress=False)
-    with pytest.raises(ValueError, match="decay must be 0 for descent"):
-        replace(STATE_FEEDBACK, decay=0.1)
-    with pytest.raises(ValueError, match="recording must hold the six runs of Appendix I"):
-        split(recording[:5])
-
-
 def test_the_hull_of_the_training_trajectories():
     assert inside_hull(APPENDIX_I[:5]).all()
     assert not inside_hull(APPENDIX_I[5])

@@ -13,7 +13,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ddlib._check import function_of, like, non_negative, number, shaped, told
+from ddlib._check import function_of, instance, non_negative, number, shaped, told
 from ddlib.dynamics import Arm
 from ddlib.trajectories import Trajectory
 
@@ -39,19 +39,20 @@ class _Function:
         return law
 
 
-def as_controller(controller: Controller | Callable) -> Controller:
+def as_controller(controller: Controller | Callable, name: str = "controller") -> Controller:
     """A controller as it is, or one made of a plain function ``f(wanted, q, qd) -> tau``.
 
     The function gets the sample of the reference (a `Trajectory` of position, velocity,
     acceleration) and the measured state, ``(..., 2)`` in rad and rad/s, and returns torques in N m.
+    A refusal calls it by `name`.
     """
     if callable(getattr(controller, "start", None)):
         return controller
     if callable(controller):
         return _Function(controller)
     raise TypeError(
-        "controller must have a start method or be a function f(wanted, q, qd), got "
-        f"{told(controller)}"
+        f"{name} must have a start method, as pd(kp, kd) has, or be a function f(wanted, q, qd), "
+        f"got {told(controller)}"
     )
 
 
@@ -122,7 +123,7 @@ class Feedforward:
         function_of("model", model, "model(q, qd, qdd) -> tau, or an Arm")
         wanted = f"(..., {reference.q.shape[-2]}, 2)"
         torque = shaped("model(q, qd, qdd)", model(*reference), wanted)
-        feedback = as_controller(self.feedback).start(reference, step)
+        feedback = as_controller(self.feedback, "feedback").start(reference, step)
 
         def law(k, q, qd):
             return torque[..., k, :] + feedback(k, q, qd)
@@ -143,7 +144,7 @@ class ComputedTorque:
     kd: tuple[float, float]
 
     def __post_init__(self):
-        like("arm", self.arm, "Arm")
+        instance("arm", self.arm, Arm)
         for name in ("kp", "kd"):
             non_negative(name, getattr(self, name), 2)
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import control
 import numpy as np
 
-from ddlib._check import filled, finite_array, integer, like, non_negative, number, told
+from ddlib._check import filled, finite_array, instance, integer, non_negative, number, told
 
 
 def plant(inertia, viscous, stiffness=0.0) -> control.StateSpace:
@@ -32,12 +32,12 @@ def plant(inertia, viscous, stiffness=0.0) -> control.StateSpace:
     if np.linalg.eigvalsh(inertia).min() <= 0:
         raise ValueError(f"inertia must be positive definite, got {told(inertia)}")
     viscous = np.diag(_per_joint("viscous", viscous, joints))
-    zero, one = np.zeros((joints, joints)), np.eye(joints)
+    zero, identity = np.zeros((joints, joints)), np.eye(joints)
     stiffness = finite_array("stiffness", stiffness)
     if stiffness.shape != zero.shape and (stiffness.ndim or (joints > 1 and stiffness != 0)):
         raise ValueError(f"stiffness must have shape {zero.shape}, got {stiffness.shape}")
     back = (-np.linalg.solve(inertia, x) for x in (zero + stiffness, viscous))
-    A = np.block([[zero, one], [*back]])
+    A = np.block([[zero, identity], [*back]])
     B = np.vstack([zero, np.linalg.inv(inertia)])
     return control.ss(A, B, np.eye(2 * joints), np.zeros((2 * joints, joints)))
 
@@ -72,7 +72,7 @@ def closed_loop(
     delay : int
         Whole periods between a reading and its torque; sampled loops only.
     """
-    like("joints", joints, "StateSpace")
+    instance("joints", joints, control.StateSpace)
     n = joints.ninputs
     A, command, torque, law, reference = _parts(joints, kp, ki, kd, period, delay)
     B = np.hstack([command @ reference[0] + reference[1], torque])
@@ -88,7 +88,7 @@ def opened_loop(
 
     In goes that torque, out comes the controller's answer with its sign reversed.
     """
-    like("joints", joints, "StateSpace")
+    instance("joints", joints, control.StateSpace)
     number("joint", joint, 0, joints.ninputs - 1)
     A, command, _, law, _ = _parts(joints, kp, ki, kd, period, delay)
     others = [k for k in range(joints.ninputs) if k != joint]
@@ -109,13 +109,13 @@ def _parts(joints, kp, ki, kd, period, delay):
     integer("delay", delay, 0)
     if period is None and delay:
         raise ValueError(f"delay must be 0 in continuous control, got {delay} periods")
-    zero, one = np.zeros((n, n)), np.eye(n)
+    zero, identity = np.zeros((n, n)), np.eye(n)
     A, B, step, at_once, hold = joints.A, joints.B, ki, zero, zero
     if period is not None:
         number("period", period, 0.0, open_low=True)
         sampled = control.sample_system(joints, period, "zoh")
         # the law adds the newest error to the integral before using it
-        A, B, step, at_once, hold = sampled.A, sampled.B, ki * period, ki * period, one
+        A, B, step, at_once, hold = sampled.A, sampled.B, ki * period, ki * period, identity
     law, size, above = np.hstack([-(kp + at_once), -kd]), 2 * n, n if ki.any() else 0
     integral, waiting = slice(size, size + above), size + above
     total = waiting + n * delay
@@ -125,11 +125,11 @@ def _parts(joints, kp, ki, kd, period, delay):
     F[:size, :size], torque[:size], of_law[:, :size] = A, B, law
     if above:
         F[integral, :n], F[integral, integral] = -step, hold
-        of_law[:, integral], reference[integral] = one, step
+        of_law[:, integral], reference[integral] = identity, step
     if delay:  # v enters the queue at its end and acts when it has reached the front
         F[:size, waiting : waiting + n] = B
         F[waiting : total - n, waiting + n :] = np.eye(total - n - waiting)
-        command[total - n :] = one
+        command[total - n :] = identity
     else:
         command[:size] = B
     return F, command, torque, of_law, (kp + at_once, reference)
@@ -149,7 +149,7 @@ def margins(loop) -> Margins:
 
     The loop has one input and one output, in continuous time or, with a `dt`, sampled.
     """
-    like("loop", loop, "LinearSystem")
+    instance("loop", loop, control.StateSpace, control.TransferFunction)
     if (loop.ninputs, loop.noutputs) != (1, 1):
         raise ValueError(
             f"loop must have one input and one output, got {loop.ninputs} and {loop.noutputs}"
@@ -213,7 +213,7 @@ def late_poles(joints: control.StateSpace, gain, period: float, late: float) -> 
     The torque ``-gain x`` of a reading is held for a `period` from `late` s on, which may be
     longer. Between changes the joints (`plant`) are solved exactly (Astrom & Wittenmark 1997).
     """
-    like("joints", joints, "StateSpace")
+    instance("joints", joints, control.StateSpace)
     number("period", period, 0.0, open_low=True)
     whole, late = divmod(number("late", late, 0.0) / period + 1e-12, 1.0)
     states, inputs = joints.B.shape

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddlib._check import every, filled, finite_array, integer, like, number
-from ddlib.control.controllers import ControlLaw, Controller
+from ddlib._check import filled, finite_array, integer, number, series, shaped
+from ddlib.control.controllers import ControlLaw, Controller, as_controller
 from ddlib.trajectories import Trajectory
 
 
@@ -36,8 +36,9 @@ def end_slope(width: int, degree: int, step: float) -> np.ndarray:
 
 def stacked(filters) -> np.ndarray:
     """Several weight rows as one array ``(filters, width)``, older readings weighted 0."""
-    every("filters", filters, "row of weights")
-    rows = [finite_array("filters", row) for row in filters]
+    rows = [shaped("filters", row, "(width,)") for row in series("filters", filters)]
+    if not rows:
+        raise ValueError("filters must be one or more, got none")
     width = max(map(len, rows))
     return np.stack([np.pad(row, (width - len(row), 0)) for row in rows])
 
@@ -55,7 +56,7 @@ class EstimatedVelocity:
     weights: tuple  #: Of the estimate, oldest reading first, (width,) or (runs, width).
 
     def __post_init__(self):
-        like("feedback", self.feedback, "Controller")
+        as_controller(self.feedback, "feedback")
         filled("weights", self.weights)
         if finite_array("weights", self.weights).ndim == 0:
             raise ValueError(f"weights must have shape (..., width), got {self.weights}")
@@ -63,7 +64,7 @@ class EstimatedVelocity:
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
         """The law that follows `reference`, called every `step` s."""
         weights = np.asarray(self.weights, dtype=float)[..., None]
-        law, past = self.feedback.start(reference, step), None
+        law, past = as_controller(self.feedback).start(reference, step), None
 
         def estimated(k, q, qd):
             nonlocal past

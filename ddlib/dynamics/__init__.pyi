@@ -25,8 +25,6 @@ from .formulations import (
 )
 from .joints import (
     DD_ARM_II_IN_SPACE as DD_ARM_II_IN_SPACE,
-    hand_position as hand_position,
-    inertial_parameters as inertial_parameters,
     locked as locked,
     mass_matrix as mass_matrix,
     regressor as regressor,

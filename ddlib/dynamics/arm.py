@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ddlib._check import finite_array, like, non_negative, number, shaped, text
+from ddlib._check import finite_array, instance, non_negative, number, shaped, text
 
 STANDARD_GRAVITY = 9.81  #: Acceleration of free fall, m/s^2.
 
@@ -65,8 +65,8 @@ class Arm:
 
         ``a = I1 + m1 lc1^2 + m2 l1^2 + d``, ``b = m2 l1 lc2`` and ``d = I2 + m2 lc2^2``.
         """
-        like("link1", link1, "Link")
-        like("link2", link2, "Link")
+        instance("link1", link1, Link)
+        instance("link2", link2, Link)
         number("gravity", gravity)
         d = link2.inertia + link2.mass * link2.com**2
         a = link1.inertia + link1.mass * link1.com**2 + link2.mass * link1.length**2 + d
@@ -189,7 +189,7 @@ class Arm:
 
 def with_load(arm: Arm, mass: float) -> Arm:
     """The arm with a point mass (kg; Han, Hemami & Yurkovich 1987 use 2, 5 and 10) in its hand."""
-    like("arm", arm, "Arm")
+    instance("arm", arm, Arm)
     number("mass", mass, 0.0)
     l1, l2 = arm.lengths
     moments = arm.gravity_moments

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddlib._check import every, flag, function_of, like, one_of
+from ddlib._check import flag, function_of, instance, one_of, series
 from ddlib.dynamics.arm import Link
 from ddlib.dynamics.counting import Operations, Tape
 from ddlib.dynamics.derivation import derive
@@ -56,7 +56,7 @@ def count_operations(
     constants of the "arm"; then the formula is customised: nothing is computed twice or in vain.
     """
     function_of("formulation", formulation, "like newton_euler")
-    like("arm", arm, "SerialArm")
+    instance("arm", arm, SerialArm)
     one_of("knowledge", knowledge, KNOWLEDGE)
     tape = Tape()
     state = [[tape.unknown(x) for x in row] for row in _state(arm.joints)]
@@ -73,10 +73,9 @@ def count_closed_form(
 
     `shared` subexpressions are computed once; velocity terms may be left out (Bejczy 1974).
     """
-    every("links", links, "Link")
     flag("shared", shared)
     flag("velocity_terms", velocity_terms)
-    links = list(links)
+    links = series("links", links, Link)
     derivation = derive(len(links))
     tape = Tape()
     q, qd, qdd = ([tape.unknown(x) for x in row] for row in _state(len(links)))
@@ -89,9 +88,8 @@ def count_closed_form(
 
 def operations_table(joints: Iterable[int], link: Link) -> dict[str, dict[int, Operations]]:
     """Operations ``{formulation: {joints: ...}}`` of planar arms and of the `PUMA_560`."""
-    every("joints", joints, "integer")
-    like("link", link, "Link")
-    joints = list(joints)
+    joints = series("joints", joints, int, np.integer)
+    instance("link", link, Link)
 
     def planar(n):
         return SerialArm.planar([link] * n)

@@ -9,7 +9,7 @@ from functools import cache, cached_property
 
 import sympy as sp
 
-from ddlib._check import every, flag, integer, number
+from ddlib._check import flag, integer, number, series
 from ddlib.dynamics.arm import Link
 
 _MAX_LINKS = 6
@@ -49,8 +49,7 @@ class Derivation:
 
     def base_values(self, links: Iterable[Link], gravity: float = 0.0) -> list[float]:
         """The base parameters of an arm under `gravity` (m/s^2), in the order of `base`."""
-        every("links", links, "Link")
-        links = list(links)
+        links = series("links", links, Link)
         if len(links) != len(self.q):
             raise ValueError(f"links must be {len(self.q)}, got {len(links)}")
         values = {sp.Symbol("g"): number("gravity", gravity)}

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, like
+from ddlib._check import finite_array, instance, integer
 from ddlib.dynamics.arm import STANDARD_GRAVITY, checked_state
 from ddlib.dynamics.formulations import link_frame
 from ddlib.dynamics.serial import SerialArm, SpatialLink
@@ -20,11 +20,11 @@ def mass_matrix(arm: SerialArm, q) -> np.ndarray:
 
     Column j is the torque that accelerates joint j alone by 1 rad/s^2 from rest.
     """
-    like("arm", arm, "SerialArm")
+    instance("arm", arm, SerialArm)
     q = finite_array("q", q, arm.joints)
-    weightless, one = SerialArm(arm.links), np.eye(arm.joints)
+    weightless, identity = SerialArm(arm.links), np.eye(arm.joints)
     rest = np.zeros_like(q)
-    columns = [weightless.inverse_dynamics(q, rest, rest + row) for row in one]
+    columns = [weightless.inverse_dynamics(q, rest, rest + row) for row in identity]
     return np.stack(columns, -1)
 
 
@@ -39,32 +39,16 @@ def _frames(arm: SerialArm, q) -> np.ndarray:
     return np.stack(placed, -3)
 
 
-def hand_position(arm: SerialArm, q) -> np.ndarray:
-    """End of the last link at angles `q` (rad), shape ``(..., 3)``, m: x and y level, z up."""
-    like("arm", arm, "SerialArm")
-    return _frames(arm, q)[..., -1, :3, 3]
-
-
-def inertial_parameters(link: SpatialLink) -> np.ndarray:
-    """What a link's torques are linear in, shape (10,), about the origin of its frame.
-
-    Mass (kg), first moments x, y, z (kg m), second moments xx, yy, zz, xy, xz, yz (kg m^2, signed).
-    """
-    like("link", link, "SpatialLink")
-    com = np.array(link.com)
-    tensor = np.array(link.inertia) + link.mass * _steiner(com)
-    return np.concatenate([[link.mass], link.mass * com, [tensor[place] for place in _SECOND]])
-
-
 def regressor(arm: SerialArm, q, qd, qdd) -> np.ndarray:
     """Matrix Y ``(..., joints, 10 joints)`` with ``tau = Y p``; angles in rad.
 
-    p are the `inertial_parameters` of all links in their order. Force and moment of a link are
-    linear in them, and each joint feels the moments of all links beyond it about its axis. Many
-    columns depend on others, or are zero: only some combinations of parameters move a joint (Khosla
-    1986).
+    p are ten parameters of each link, in their order, about the origin of its frame: mass (kg),
+    first moments x, y, z (kg m), second moments xx, yy, zz, xy, xz, yz (kg m^2, signed). Force and
+    moment of a link are linear in them, and each joint feels the moments of all links beyond it
+    about its axis. Many columns depend on others, or are zero: only some combinations of parameters
+    move a joint (Khosla 1986).
     """
-    like("arm", arm, "SerialArm")
+    instance("arm", arm, SerialArm)
     q, qd, qdd = checked_state(q, qd, qdd, arm.joints)
     placed = _frames(arm, q)
     axes, places = placed[..., :3, 2], placed[..., :3, 3]
@@ -114,7 +98,7 @@ def _tensor_times(x) -> np.ndarray:
 
 def locked(arm: SerialArm, joints: int) -> SerialArm:
     """The arm with only its first joints free, what lies beyond locked at angle zero: one body."""
-    like("arm", arm, "SerialArm")
+    instance("arm", arm, SerialArm)
     integer("joints", joints, 1, arm.joints)
     if joints == arm.joints:
         return arm
@@ -164,14 +148,14 @@ def _arm_in_space() -> SerialArm:
     middle = ends - length / 2
     own = mass * gyration**2
     whole, centre, inertia = 14.0, 0.09, 0.60  # of the forearm of `CMU_DD_ARM_II`
-    left = float(whole - mass.sum())
-    com = float((whole * centre - mass @ middle) / left)
+    own_mass = float(whole - mass.sum())
+    com = float((whole * centre - mass @ middle) / own_mass)
     about_axis = inertia + whole * centre**2 - (own + mass * middle**2).sum()
-    about_com = about_axis - left * com**2
+    about_com = about_axis - own_mass * com**2
     twists = (-90.0, 90.0, -90.0, 90.0, 0.0)
     first = SpatialLink(0.0, 0.50, 0.0, 14.0, (0.22 - 0.50, 0.0, 0.0), np.diag([0, 0, 0.40]))
     place = com - to_third_axis, 0.0, 0.0
-    second = SpatialLink(90.0, to_third_axis, 0.0, left, place, np.eye(3) * about_com)
+    second = SpatialLink(90.0, to_third_axis, 0.0, own_mass, place, np.eye(3) * about_com)
     rest = [
         SpatialLink(twist, a, 0.0, m, (-a / 2, 0.0, 0.0), np.eye(3) * i)
         for twist, a, m, i in zip(twists, length, mass, own)

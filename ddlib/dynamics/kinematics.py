@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import finite_array, like, one_of
+from ddlib._check import finite_array, instance, one_of
 from ddlib.dynamics.arm import Arm
 from ddlib.trajectories import Trajectory
 
@@ -21,7 +21,7 @@ class Unreachable(ValueError):
 
 def jacobian(arm: Arm, q) -> np.ndarray:
     """Derivatives of the hand's position by the angles `q` (rad), shape (..., 2, 2), m/rad."""
-    like("arm", arm, "Arm")
+    instance("arm", arm, Arm)
     elbow, hand = np.moveaxis(arm.forward_kinematics(q), -2, 0)
     arms = np.stack([hand, hand - elbow], -1)  # from each joint to the hand, (..., xy, joint)
     return np.stack([-arms[..., 1, :], arms[..., 0, :]], -2)
@@ -41,7 +41,7 @@ def _jacobian_rate(arm: Arm, q, qd) -> np.ndarray:
 
 def reach(arm: Arm) -> tuple[float, float]:
     """Least and largest distance of the hand from the shoulder, elbow not too straight, m."""
-    like("arm", arm, "Arm")
+    instance("arm", arm, Arm)
     (l1, l2), bent = arm.lengths, np.sqrt(1 - _LEAST_SINE**2)
     near, far = (np.sqrt(l1**2 + l2**2 + s * 2 * l1 * l2 * bent) for s in (-1, 1))
     return float(near), float(far)
@@ -53,7 +53,7 @@ def inverse_kinematics(arm: Arm, hand, elbow: str = "positive") -> np.ndarray:
     `elbow` is the sign of the elbow angle, "positive" or "negative". Points that are too far or too
     near, with the arm within 3 degrees of stretched or folded, are `Unreachable`.
     """
-    like("arm", arm, "Arm")
+    instance("arm", arm, Arm)
     hand, (l1, l2) = finite_array("hand", hand, 2), arm.lengths
     one_of("elbow", elbow, ELBOWS)
     distance2 = (hand**2).sum(-1)
@@ -73,7 +73,7 @@ def inverse_kinematics(arm: Arm, hand, elbow: str = "positive") -> np.ndarray:
 
 def follow_hand(arm: Arm, hand, velocity, acceleration, elbow: str = "positive") -> Trajectory:
     """Joint motion that moves the hand along a path ``(..., time, 2)``; m, m/s and m/s^2."""
-    like("arm", arm, "Arm")
+    instance("arm", arm, Arm)
     q = inverse_kinematics(arm, hand, elbow)
     # a path is continuous: the shoulder's angle runs on beyond half a turn
     q = np.stack([np.unwrap(q[..., 0], axis=-1), q[..., 1]], -1)
@@ -87,7 +87,7 @@ def follow_hand(arm: Arm, hand, velocity, acceleration, elbow: str = "positive")
 
 def end_point_error(arm: Arm, wanted, q) -> np.ndarray:
     """Where the hand is, at angles `q`, minus where it should be, at `wanted`; (..., 2), m."""
-    like("arm", arm, "Arm")
+    instance("arm", arm, Arm)
     finite_array("wanted", wanted, 2)
     finite_array("q", q, 2)
     return arm.forward_kinematics(q)[..., 1, :] - arm.forward_kinematics(wanted)[..., 1, :]

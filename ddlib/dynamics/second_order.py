@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddlib._check import finite_array, like, non_negative
+from ddlib._check import finite_array, instance, non_negative
 from ddlib.dynamics.arm import Arm
 
 
@@ -23,7 +23,7 @@ class SecondOrderModel:
     viscous: tuple[float, float] = (0.0, 0.0)  #: Viscous friction, N m s/rad.
 
     def __post_init__(self):
-        like("arm", self.arm, "Arm")
+        instance("arm", self.arm, Arm)
         finite_array("posture", self.posture, 2)
         non_negative("viscous", self.viscous, 2)
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddlib._check import every, finite_array, function_of, integer, number, shaped, told
+from ddlib._check import finite_array, function_of, integer, number, series, shaped, told
 from ddlib.dynamics.arm import STANDARD_GRAVITY, Link, checked_state
 from ddlib.dynamics.formulations import ArmConstants, LinkConstants, newton_euler
 
@@ -63,23 +63,21 @@ class SerialArm:
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def __post_init__(self):
-        every("links", self.links, "SpatialLink")
-        links = tuple(self.links)
-        if not links or not all(isinstance(link, SpatialLink) for link in links):
-            raise TypeError(f"links must be one or more SpatialLink, got {self.links!r}")
+        links = tuple(series("links", self.links, SpatialLink))
+        if not links:
+            raise ValueError("links must be one or more, got none")
         object.__setattr__(self, "links", links)
         object.__setattr__(self, "gravity", tuple(shaped("gravity", self.gravity, (3,)).tolist()))
 
     @classmethod
     def planar(cls, links: Iterable[Link], gravity: float = 0.0) -> SerialArm:
         """An arm of parallel axes; angles count from hanging along the x axis, as in `Arm`."""
-        every("links", links, "Link")
         number("gravity", gravity)
         spatial = (
             SpatialLink(
                 0.0, k.length, 0.0, k.mass, (k.com - k.length, 0.0, 0.0), np.diag([0, 0, k.inertia])
             )
-            for k in links
+            for k in series("links", links, Link)
         )
         return cls(tuple(spatial), (gravity, 0.0, 0.0))
 

@@ -8,7 +8,6 @@ from .actuators import (
 )
 from .friction import (
     CoulombFriction as CoulombFriction,
-    LuGreFriction as LuGreFriction,
     StickSlipFriction as StickSlipFriction,
     StribeckFriction as StribeckFriction,
     ViscousFriction as ViscousFriction,

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ddlib._check import finite_array, like, non_negative, number, positive
+from ddlib._check import finite_array, instance, non_negative, number, positive
+from ddlib.dynamics import Arm
 
 
 @dataclass(frozen=True)
@@ -119,9 +120,9 @@ class FlexibleJoint:
         touching = (pressed != 0) | (np.asarray(self.gap) == 0)
         return np.asarray(self.stiffness) * pressed + np.asarray(self.damping) * rate * touching
 
-    def links(self, arm):
+    def links(self, arm: Arm) -> Arm:
         """The `arm` without its motors' inertia: what hangs behind the springs."""
-        like("arm", arm, "Arm")
+        instance("arm", arm, Arm)
         shoulder, elbow = self.motor_inertia
         try:
             return replace(arm, a=arm.a - shoulder - elbow, d=arm.d - elbow)
@@ -130,9 +131,8 @@ class FlexibleJoint:
                 f"motor_inertia must be part of the inertia of {arm.name}, got {self.motor_inertia}"
             ) from error
 
-    def mass_matrix(self, arm, q) -> np.ndarray:
+    def mass_matrix(self, arm: Arm, q) -> np.ndarray:
         """Mass matrix (..., 4, 4), kg m^2, of both links, then both motors; `q`: link angles."""
-        like("arm", arm, "Arm")
         links = self.links(arm).mass_matrix(q)
         shoulder, elbow = self.motor_inertia
         mass = np.zeros((*links.shape[:-2], 4, 4))
@@ -142,9 +142,8 @@ class FlexibleJoint:
         mass[..., 0, 3] = mass[..., 3, 0] = elbow
         return mass
 
-    def mode_frequencies(self, arm, q) -> np.ndarray:
+    def mode_frequencies(self, arm: Arm, q) -> np.ndarray:
         """Natural frequencies (..., 2) of small twists at link angles `q`, rad/s, rising."""
-        like("arm", arm, "Arm")
         k = np.asarray(self.stiffness, dtype=float)[..., None] * np.eye(2)
         spring = np.block([[k, -k], [-k, k]])
         # modes of M x'' + K x = 0; two are rigid rotations of frequency 0

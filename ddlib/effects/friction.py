@@ -1,4 +1,4 @@
-"""Friction laws of a joint: viscous, Coulomb, Stribeck, one that truly sticks, one that remembers.
+"""Friction laws of a joint: viscous, Coulomb, Stribeck, one that truly sticks.
 
 Strengths are arrays ``(2,)``, or ``(runs, 2)`` for runs that differ in friction.
 """
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddlib._check import non_negative, number, positive
+from ddlib._check import non_negative, number
 
 
 @dataclass(frozen=True)
@@ -113,56 +113,3 @@ class StickSlipFriction(_Stribeck):
     def torque(self, qd):
         """Friction torque (N m) of joints that slide at `qd` (rad/s); 0 at rest, where it holds."""
         return self.size(qd) * np.sign(qd)
-
-
-@dataclass(frozen=True)
-class LuGreFriction(_Stribeck):
-    """Stribeck friction with a memory: bristles that bend before they slip.
-
-    Their bend z follows ``z' = qd - stiffness |qd| z / size(qd)``, and the friction torque is
-    ``stiffness z + damping z'`` (Canudas de Wit et al. 1995). So a joint yields like a spring
-    before it breaks away, and the torque lags behind the velocity. `ddlib.simulation.plant` keeps
-    a memory for each run; put `ViscousFriction` beside this law for a lubricant.
-    """
-
-    stiffness: tuple[float, float] = (1000.0, 300.0)  #: Of the bristles, N m/rad per joint.
-    damping: tuple[float, float] = (5.0, 1.5)  #: Of the bristles, N m s/rad per joint.
-
-    def __post_init__(self):
-        super().__post_init__()
-        positive("level", self.level)
-        positive("stiffness", self.stiffness)
-        non_negative("damping", self.damping, 2)
-
-    @property
-    def slope(self) -> np.ndarray:
-        """Steepest rise of the torque with velocity, N m s/rad per joint: the bristles' damping."""
-        return np.asarray(self.damping, dtype=float)
-
-    def torque(self, qd):
-        """Friction torque (N m) of joints that have long slid at `qd` (rad/s)."""
-        return self.size(qd) * np.sign(qd)
-
-    def start(self) -> Bristles:
-        """The memory of one run, unbent at first."""
-        return Bristles(self)
-
-
-class Bristles:
-    """What a joint with `LuGreFriction` remembers: how far its bristles are bent."""
-
-    def __init__(self, law: LuGreFriction):
-        self._law, self._stiffness = law, np.asarray(law.stiffness, dtype=float)
-        self.bend = np.zeros(2)  #: rad
-
-    def torque(self, qd) -> np.ndarray:
-        """Friction torque (N m) at joint velocities `qd` (rad/s), with the bristles as they are."""
-        slip = np.abs(qd) * self._stiffness * self.bend / self._law.size(qd)
-        return self._stiffness * self.bend + np.asarray(self._law.damping) * (qd - slip)
-
-    def slide(self, qd, seconds) -> None:
-        """Bend by what `seconds` at constant `qd` (rad/s) do: exactly, however stiff."""
-        size = self._law.size(qd)
-        settled = size * np.sign(qd) / self._stiffness
-        forgotten = np.exp(-np.abs(qd) * self._stiffness / size * seconds)
-        self.bend = settled + (self.bend - settled) * forgotten

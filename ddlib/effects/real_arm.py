@@ -118,8 +118,8 @@ class Effects:
     """Everything between the rigid-body equations and what is written to the log.
 
     Each part is a tuple of effects, in the order in which a signal meets them: frictions with
-    ``torque(qd)`` and, if they have a memory, ``start()``; motors with ``shaft_torque(tau, q)``;
-    others with ``apply(x, rng)`` or, if they have a memory, ``start(initial)``.
+    ``torque(qd)``, motors with ``shaft_torque(tau, q)``, others with ``apply(x, rng)`` or, if they
+    have a memory, ``start(initial)``.
     """
 
     friction: tuple = ()  #: Opposes the motion, inside the plant.
@@ -152,10 +152,7 @@ class Effects:
         return sum(e.seconds for e in self.actuator if isinstance(e, ComputingTime))
 
     def friction_torque(self, qd) -> np.ndarray:
-        """Sum of all friction torques (N m) at `qd` (rad/s), shape ``(..., joint)``.
-
-        Of a friction with a memory it is the torque of steady sliding.
-        """
+        """Sum of all friction torques (N m) at `qd` (rad/s), shape ``(..., joint)``."""
         torques = [effect.torque(qd) for effect in self.friction]
         return sum(torques[1:], torques[0]) if torques else np.zeros_like(qd)
 

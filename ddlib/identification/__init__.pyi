@@ -1,9 +1,6 @@
 from .averaging import (
     encoder_step as encoder_step,
 )
-from .consistency import (
-    physically_consistent as physically_consistent,
-)
 from .equations import (
     by_differences as by_differences,
     by_modulation as by_modulation,

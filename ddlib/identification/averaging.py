@@ -16,7 +16,7 @@ BY_SAMPLE = "Equations of single samples give no intervals: what smoothing takes
 _SHAKES = 8  # how often noise is added to readings, to see what it does to a regressor
 
 
-def in_runs(recording: Recording) -> Recording:
+def with_runs(recording: Recording) -> Recording:
     """The recording with an axis for runs, even if it is a single one."""
     single = recording.reference.q.ndim == 2
     return recording.mapped(lambda x: x[..., None, :, :]) if single else recording
@@ -58,12 +58,12 @@ def where_sign_is_sure(recording: Recording, names) -> np.ndarray:
     return speed >= least_speed[:, None, None]
 
 
-def notes_on_slow_joints(kept, names) -> tuple[str, ...]:
+def notes_on_slow_joints(used, names) -> tuple[str, ...]:
     """A word on each joint (joint, ...) of which nothing is kept, as it is slow."""
     return tuple(
         f"All equations of joint {j + 1} were left out: with F_c{j + 1} they ask for a joint that "
         f"moves on at {SLOW} rad/s or more. Without F_c{j + 1} they count."
-        for j, keep in enumerate(kept)
+        for j, keep in enumerate(used)
         if f"F_c{j + 1}" in names and not np.any(keep)
     )
 

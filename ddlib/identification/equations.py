@@ -18,11 +18,11 @@ from ddlib.identification.averaging import (
     bumps_held,
     bumps_over,
     five_point_velocity,
-    in_runs,
     mean_sign,
     notes_on_slow_joints,
     regressor_blur,
     where_sign_is_sure,
+    with_runs,
 )
 from ddlib.identification.regression import (
     FRICTION,
@@ -94,7 +94,7 @@ def by_modulation(
     width = int((width + tiny) / (6 * recording.step)) * 6 * recording.step
     if hold is None and recording.control_step is None:
         raise ValueError("hold must be given, as the recording has no control_step; got None")
-    acting, recording = acting_time(recording, hold), in_runs(recording)
+    acting, recording = acting_time(recording, hold), with_runs(recording)
     place = recording.t - begin, width, end - begin
     bumps, later, after = (
         bumps_over(*place),
@@ -156,7 +156,7 @@ def repeat(
 
 def _sampled(recording: Recording, velocity, acceleration, names, margin) -> Equations:
     """Equations at the samples of the motion, `margin` samples away from its ends."""
-    recording = in_runs(recording)
+    recording = with_runs(recording)
     shape = recording.q.shape
     equations = from_states(
         recording.q, velocity.reshape(shape), acceleration.reshape(shape), recording.tau, names

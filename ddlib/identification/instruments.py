@@ -74,15 +74,17 @@ def instrumental_variables(
         felt = sum(w * (_t(z) @ y[..., None]) for w, z, y in zip(weights, others, torques))
         inverse = np.linalg.inv(seen)
         values = (inverse @ felt)[..., 0]
-        left = [y - (x @ values[..., None])[..., 0] for x, y in zip(regressors, torques)]
+        residuals = [y - (x @ values[..., None])[..., 0] for x, y in zip(regressors, torques)]
         free = max(1 - len(names) / equation_count, 1e-9)
-        noise = [np.sqrt(np.mean(u**2, -1) / free) if u.size else s for u, s in zip(left, noise)]
+        noise = [
+            np.sqrt(np.mean(u**2, -1) / free) if u.size else s for u, s in zip(residuals, noise)
+        ]
     # an equation draws the fit to itself: what it would leave without (MacKinnon & White 1985)
     drawn = [
         w[..., 0] * np.sum((x @ inverse) * z, -1) for w, x, z in zip(weights, regressors, others)
     ]
-    left = [u / (1 - np.clip(h, 0, 0.9)) for u, h in zip(left, drawn)]
-    scores = [w * z * u[..., None] for w, z, u in zip(weights, others, left)]
+    residuals = [u / (1 - np.clip(h, 0, 0.9)) for u, h in zip(residuals, drawn)]
+    scores = [w * z * u[..., None] for w, z, u in zip(weights, others, residuals)]
     scores = [sum(scores)] if len(set(shapes)) == 1 else scores
     variances = []
     for near in (np.ones(1), np.bartlett(2 * memory + 3)[1:-1]):

@@ -43,8 +43,8 @@ def joint_terms(states) -> tuple[dict[str, np.ndarray], ...]:
 def joint_columns(states, joint: int, friction: bool = True) -> np.ndarray:
     """The `joint_terms` of one joint (0 to 5) as a matrix, ``(cases, factors)``."""
     row = joint_terms(states)[integer("joint", joint, 0, _JOINTS - 1)]
-    kept = [x for name, x in row.items() if friction or name not in _FRICTION]
-    return np.stack(kept, -1)
+    columns = [x for name, x in row.items() if friction or name not in _FRICTION]
+    return np.stack(columns, -1)
 
 
 def _angles(q) -> dict[str, tuple]:

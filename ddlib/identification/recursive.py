@@ -35,6 +35,6 @@ class RecursiveLeastSquares:
         predicted = (self.weights @ features[..., None])[..., 0]
         missed = (target - predicted)[..., None]
         self.weights = self.weights + missed * gain[..., None, :]
-        left = (self.covariance - gain[..., None] * seen[..., None, :]) / self.forgetting
-        self.covariance = (left + np.swapaxes(left, -1, -2)) / 2
+        reduced = (self.covariance - gain[..., None] * seen[..., None, :]) / self.forgetting
+        self.covariance = (reduced + np.swapaxes(reduced, -1, -2)) / 2
         return predicted

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.linalg import eigh, null_space
 from scipy.stats import t as student
 
-from ddlib._check import finite_array, integer, like, number, one_of
+from ddlib._check import finite_array, instance, integer, number, one_of
 from ddlib.dynamics import Arm
 from ddlib.effects import CoulombFriction, Effects, ViscousFriction
 from ddlib.trajectories import Trajectory
@@ -139,7 +139,7 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
     ValueError
         If there are no more equations than parameters, or nothing can be told.
     """
-    like("equations", equations, "Equations")
+    instance("equations", equations, Equations)
     integer("rounds", rounds, 1)
     names, equation_count = equations.names, sum(y.shape[-1] for y in equations.torque)
     if equation_count <= len(names):
@@ -177,8 +177,8 @@ def _solved(names, regressors, torques, rounds) -> Estimate:
             raise ValueError(f"equations must determine all of {', '.join(names)}; they do not")
         inverse = np.linalg.inv(triangle)
         projected = np.einsum("...np,...n->...p", basis, y / sigma)
-        left = y - np.einsum("...np,...p->...n", basis, projected) * sigma
-        noise = np.stack([_spread(left[..., j], basis[..., j, :]) for j in joints], -1)
+        residual = y - np.einsum("...np,...p->...n", basis, projected) * sigma
+        noise = np.stack([_spread(residual[..., j], basis[..., j, :]) for j in joints], -1)
     values = np.einsum("...pq,...q->...p", inverse, projected)
     freedom = sum(counts) - len(names)
     errors = np.linalg.norm(inverse, axis=-1)
@@ -230,11 +230,13 @@ def _information(equations, joints=None):
             continue
         a, y = a.reshape(-1, *a.shape[-2:]), y.reshape(-1, y.shape[-1])
         basis, values, _ = np.linalg.svd(a, full_matrices=False)
-        kept = basis * (values > 1e-10 * values.max(-1, keepdims=True))[:, None, :]
-        left = y - (kept @ (np.swapaxes(kept, -1, -2) @ y[..., None]))[..., 0]
+        spanned = basis * (values > 1e-10 * values.max(-1, keepdims=True))[:, None, :]
+        residual = y - (spanned @ (np.swapaxes(spanned, -1, -2) @ y[..., None]))[..., 0]
         power = np.mean(y**2)
         free = y.shape[-1] - parameters
-        variance = max(np.sum(left**2) / (len(left) * free), 1e-20 * power) if free > 0 else power
+        variance = (
+            max(np.sum(residual**2) / (len(residual) * free), 1e-20 * power) if free > 0 else power
+        )
         if variance == 0:
             continue
         seen += np.mean(np.swapaxes(a, -1, -2) @ a, 0) / variance
@@ -270,16 +272,16 @@ def _unseen(equations, joints=None, like=None) -> np.ndarray:
     return np.hstack([nothing, np.linalg.qr(directions)[0]]) if ways.size else nothing
 
 
-def _biased(equations, found, ways) -> np.ndarray | None:
+def _biased(equations, estimate, ways) -> np.ndarray | None:
     """Where noise in the motion moves sums of parameters by more than half a standard error."""
     if equations.biased:
-        return np.ones(found.values.shape, bool)
+        return np.ones(estimate.values.shape, bool)
     if equations.blur is None:
         return None
-    weights = np.maximum(found.noise, 1e-100) ** -2.0
+    weights = np.maximum(estimate.noise, 1e-100) ** -2.0
     blur = np.tensordot(weights, np.stack(equations.blur), 1)
-    bias = found.covariance @ (ways.T @ blur @ ways) @ found.values[..., None]
-    return np.abs(bias[..., 0]) > 0.5 * found.errors
+    bias = estimate.covariance @ (ways.T @ blur @ ways) @ estimate.values[..., None]
+    return np.abs(bias[..., 0]) > 0.5 * estimate.errors
 
 
 def _partly(equations, unseen, rounds, notes) -> Estimate:
@@ -324,19 +326,23 @@ def _partly(equations, unseen, rounds, notes) -> Estimate:
     )  # fmt: skip
 
 
-def _sums(equations, unseen, told, size) -> list[np.ndarray]:
+def _sums(equations, unseen, determined, size) -> list[np.ndarray]:
     """Independent sums of untold parameters that can be told: those of single joints first."""
     spaces = [_unseen(equations, [j], size) for j in range(len(equations.torque))]
-    kept, wanted = [], len(size) - unseen.shape[1] - told.sum()
+    independent, wanted = [], len(size) - unseen.shape[1] - determined.sum()
     for space in (*spaces, unseen):
-        rows = null_space(space.T).T * ~told
+        rows = null_space(space.T).T * ~determined
         for row in _reduced(rows):
             row = row * (np.abs(row) > _TOUCHED * np.abs(row).max())
-            tried = np.array([*kept, row])
+            tried = np.array([*independent, row])
             fits = np.linalg.norm(row @ unseen) < 0.1 * np.linalg.norm(row)
-            if len(kept) < wanted and fits and np.linalg.matrix_rank(tried, tol=0.05) > len(kept):
-                kept.append(row / np.linalg.norm(row))
-    sums = [row * size for row in kept]
+            if (
+                len(independent) < wanted
+                and fits
+                and np.linalg.matrix_rank(tried, tol=0.05) > len(independent)
+            ):
+                independent.append(row / np.linalg.norm(row))
+    sums = [row * size for row in independent]
     return [row / row[np.flatnonzero(row)[0]] for row in sums]
 
 
@@ -355,11 +361,11 @@ def _reduced(rows) -> list[np.ndarray]:
     return done
 
 
-def _impossible(found) -> list[str]:
+def _impossible(estimate) -> list[str]:
     """A word if no arm has these parameters."""
-    if found.values.ndim > 1 or not set(RIGID) <= set(found.names):
+    if estimate.values.ndim > 1 or not set(RIGID) <= set(estimate.names):
         return []
-    a, b, d = (found.values[found.names.index(name)] for name in RIGID)
+    a, b, d = (estimate.values[estimate.names.index(name)] for name in RIGID)
     if d > 0 and d * (a - d) > b**2:
         return []
     return [
@@ -367,15 +373,15 @@ def _impossible(found) -> list[str]:
     ]
 
 
-def _alike(equations, regressors, found) -> list[str]:
+def _alike(equations, regressors, estimate) -> list[str]:
     """A word on each joint whose averaged equations leave more than noise: neighbours are alike."""
-    if found.values.ndim > 1 or equations.blur is None:
+    if estimate.values.ndim > 1 or equations.blur is None:
         return []
     notes = []
     for j, (a, y) in enumerate(zip(regressors, equations.torque)):
-        left = y - a @ found.values
-        share = left[1:] @ left[:-1] / (left @ left) if left.any() else 0.0
-        if share * np.sqrt(left.size) > _ALIKE:
+        residual = y - a @ estimate.values
+        share = residual[1:] @ residual[:-1] / (residual @ residual) if residual.any() else 0.0
+        if share * np.sqrt(residual.size) > _ALIKE:
             notes.append(
                 f"What is left of joint {j + 1}'s torque is no noise, as neighbours are alike "
                 f"(correlation {share:.2f}): an effect has no term, or the torque is logged early "
@@ -441,10 +447,10 @@ def excitation(trajectory: Trajectory, names: Sequence[str] = RIGID, noise: floa
     return float(values[0] / values[-1])
 
 
-def _spread(left, basis) -> np.ndarray:
+def _spread(residual, basis) -> np.ndarray:
     """Standard deviation of one joint's residuals; what its equations spent is not counted."""
-    free = left.shape[-1] - np.sum(basis**2, (-2, -1))
-    return np.sqrt(np.sum(left**2, -1) / np.maximum(free, 1e-9))
+    free = residual.shape[-1] - np.sum(basis**2, (-2, -1))
+    return np.sqrt(np.sum(residual**2, -1) / np.maximum(free, 1e-9))
 
 
 def known_names(names) -> None:

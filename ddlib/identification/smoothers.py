@@ -18,12 +18,12 @@ from ddlib.identification.averaging import (
     bumps_held,
     bumps_over,
     encoder_step,
-    in_runs,
     mean_sign,
     notes_on_slow_joints,
     reading_noise,
     regressor_blur,
     where_sign_is_sure,
+    with_runs,
 )
 from ddlib.identification.regression import FRICTION, RIGID, Equations, from_states
 from ddlib.logs.checking import warn_of_log
@@ -196,7 +196,7 @@ def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
     orders = again(recording.q)
     warn_of_log(recording)
     acting = acting_time(recording, hold)
-    rows, single = in_runs(recording if rows is None else rows), recording.reference.q.ndim == 2
+    rows, single = with_runs(recording if rows is None else rows), recording.reference.q.ndim == 2
     steady = where_sign_is_sure(rows, names)
     if steady.shape[-1] != recording.t.size:
         raise ValueError(f"rows must have {recording.t.size} samples, got {steady.shape[-1]}")
@@ -205,7 +205,7 @@ def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
     (begin, end), step, motion = recording.span, recording.step, recording.motion
     inside = np.zeros(recording.t.size, bool)
     inside[max(motion.start, margin) : min(motion.stop, len(inside) - margin)] = True
-    tau = in_runs(recording).tau
+    tau = with_runs(recording).tau
     equations = from_states(*np.moveaxis(states, -1, 0), tau, names)
     if width is None:
         _some(keep := steady & inside, margin * step)
@@ -251,7 +251,7 @@ def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
         )
         for y, ws, runs in zip(equations.torque, whiten, keeps)
     )
-    blur = regressor_blur(in_runs(recording), regressor)
+    blur = regressor_blur(with_runs(recording), regressor)
     return Equations(
         tuple(names), averaged(states), torques, blur, notes=notes_on_slow_joints(keeps, names)
     )
@@ -297,10 +297,10 @@ def _likeliest(runs, noise) -> float:
     samples = runs.shape[1]
 
     def unlikely(exponent) -> float:
-        _, halves, left = _states(runs, 10.0**exponent)
+        _, halves, misfit = _states(runs, 10.0**exponent)
         free = samples - _ORDER
-        variance = np.mean(left) / free + 1e-300 if noise is None else noise**2
-        return free * np.log(variance) + halves + np.mean(left) / variance
+        variance = np.mean(misfit) / free + 1e-300 if noise is None else noise**2
+        return free * np.log(variance) + halves + np.mean(misfit) / variance
 
     ends = np.log10([_SMOOTHEST, _ROUGHEST])
     return 10.0 ** minimize_scalar(unlikely, bounds=ends, options={"xatol": 0.03}).x
@@ -333,7 +333,7 @@ def _states(runs, share) -> tuple[np.ndarray, float, np.ndarray]:
     x = cho_solve_banded((triangle, True), right.reshape(-1, len(runs)))
     x = np.moveaxis(x.reshape(right.shape), -1, 0)
     jump = x[:, 1:] - x[:, :-1] @ ahead.T
-    left = ((runs - centre - x[..., 0]) ** 2).sum(1) + ((jump @ weight) * jump).sum((1, 2))
+    misfit = ((runs - centre - x[..., 0]) ** 2).sum(1) + ((jump @ weight) * jump).sum((1, 2))
     x[..., 0] += centre
     log_process = order * np.log(share) + np.linalg.slogdet(process)[1]
-    return x, float(2 * np.log(triangle[0]).sum() + (samples - 1) * log_process), left
+    return x, float(2 * np.log(triangle[0]).sum() + (samples - 1) * log_process), misfit

@@ -20,10 +20,10 @@ _NUDGE = 1e-4  # of a state's deviation, for the slope of the torque over it
 _STEPS, _SMALL = 60, 1e-6  # Gauss-Newton steps at most, and a gain at which they end
 
 
-class _Found(NamedTuple):
+class _Projection(NamedTuple):
     cost: float  # mean logarithm of the joints' mean squared errors, and the pull
     values: np.ndarray  # the best parameters for some filters
-    left: np.ndarray  # what they leave over, (cases, joint), N m
+    residual: np.ndarray  # what they leave over, (cases, joint), N m
     noise: np.ndarray  # its root mean square by joint
     basis: np.ndarray  # orthonormal, of the weighted regressor's columns
 
@@ -151,35 +151,35 @@ class FilteredEquations:
             raise ValueError("pull must be given if there is a single run, got None")
         wrong, scale = np.zeros(len(_PULLS)), np.concatenate([y for _, y in pairs]).std(0)
         for out, (x, y) in enumerate(pairs):
-            z, kept = start, [np.concatenate(p) for p in zip(*pairs[:out], *pairs[out + 1 :])]
+            z, others = start, [np.concatenate(p) for p in zip(*pairs[:out], *pairs[out + 1 :])]
             for k, pull in enumerate(_PULLS):
-                z, found = self._solve(*kept, pull, z)
-                left = y - self._rows(x @ (self.first + self._ways @ z).T) @ found.values
-                wrong[k] += ((left / scale) ** 2).sum()
+                z, projection = self._solve(*others, pull, z)
+                residual = y - self._rows(x @ (self.first + self._ways @ z).T) @ projection.values
+                wrong[k] += ((residual / scale) ** 2).sum()
         return _PULLS[int(wrong.argmin())]
 
-    def _solve(self, x, y, pull, z) -> tuple[np.ndarray, _Found]:
+    def _solve(self, x, y, pull, z) -> tuple[np.ndarray, _Projection]:
         """Gauss-Newton steps from `z` on, damped as by Levenberg and Marquardt."""
         if (y.std(0) == 0).any():
             raise ValueError("torques must vary at each joint, got constant ones")
-        found, damping = self._project(x, y, z, pull, y.std(0)), 1e-3
+        projection, damping = self._project(x, y, z, pull, y.std(0)), 1e-3
         for _ in range(_STEPS):
-            slopes, before = self._slopes(x, z, found), found.cost
-            slopes -= found.basis @ (found.basis.T @ slopes)
+            slopes, before = self._slopes(x, z, projection), projection.cost
+            slopes -= projection.basis @ (projection.basis.T @ slopes)
             curve = slopes.T @ slopes / y.size
-            down = slopes.T @ (found.left / found.noise).ravel() / y.size - pull * z
+            down = slopes.T @ (projection.residual / projection.noise).ravel() / y.size - pull * z
             while damping < 1e6:
                 more = np.linalg.solve(curve + (pull + damping) * np.eye(z.size), down)
-                tried = self._project(x, y, z + more, pull, found.noise)
+                tried = self._project(x, y, z + more, pull, projection.noise)
                 if tried.cost <= before:
-                    z, found, damping = z + more, tried, damping / 4
+                    z, projection, damping = z + more, tried, damping / 4
                     break
                 damping *= 4
-            if before - found.cost < _SMALL:
+            if before - projection.cost < _SMALL:
                 break
-        return z, found
+        return z, projection
 
-    def _project(self, x, y, z, pull, noise) -> _Found:
+    def _project(self, x, y, z, pull, noise) -> _Projection:
         """The best parameters for filters, with each joint's weight by its noise so far."""
         rows = self._rows(x @ (self.first + self._ways @ z).T)
         basis, triangle = np.linalg.qr((rows / noise[:, None]).reshape(y.size, -1))
@@ -187,38 +187,43 @@ class FilteredEquations:
         if not (size > 0).all() or np.linalg.cond(triangle / size) > 1e10:
             raise ValueError("runs must determine all parameters of the regressor; they do not")
         values = np.linalg.solve(triangle, basis.T @ (y / noise).ravel())
-        left = y - rows @ values
-        noise = np.maximum(np.sqrt((left**2).mean(0)), 1e-9 * y.std(0))
-        return _Found(2 * np.log(noise).mean() + pull * z @ z, values, left, noise, basis)
+        residual = y - rows @ values
+        noise = np.maximum(np.sqrt((residual**2).mean(0)), 1e-9 * y.std(0))
+        return _Projection(2 * np.log(noise).mean() + pull * z @ z, values, residual, noise, basis)
 
-    def _slopes(self, x, z, found) -> np.ndarray:
+    def _slopes(self, x, z, projection) -> np.ndarray:
         """How the weighted torques change with the filters' coefficients, (cases * joint, z)."""
-        states, slopes = x @ (self.first + self._ways @ z).T, np.zeros((*found.left.shape, z.size))
+        states, slopes = (
+            x @ (self.first + self._ways @ z).T,
+            np.zeros((*projection.residual.shape, z.size)),
+        )
         for j, k in np.argwhere(np.tile(self._ways.any((1, 2)), (x.shape[1], 1))):
             nudge = np.zeros(states.shape[1:])
             nudge[j, k] = _NUDGE * max(states[:, j, k].std(), 1e-9)
             change = self._rows(states + nudge) - self._rows(states - nudge)
-            slope = change @ found.values / (2 * nudge[j, k] * found.noise)
+            slope = change @ projection.values / (2 * nudge[j, k] * projection.noise)
             slopes += slope[..., None] * (x[:, j] @ self._ways[k])[:, None]
-        return slopes.reshape(found.left.size, -1)
+        return slopes.reshape(projection.residual.size, -1)
 
-    def _measure(self, x, y, lengths, z, found) -> None:
+    def _measure(self, x, y, lengths, z, projection) -> None:
         """Standard errors of filters and parameters."""
-        rows = (self._rows(x @ self.filters.T) / found.noise[:, None]).reshape(y.size, -1)
+        rows = (self._rows(x @ self.filters.T) / projection.noise[:, None]).reshape(y.size, -1)
         size = np.linalg.norm(rows, axis=0)
-        every = np.concatenate([self._slopes(x, z, found), rows / size], -1)
+        every = np.concatenate([self._slopes(x, z, projection), rows / size], -1)
         pulled = np.diag(np.repeat([y.size * self.pull, 0], [z.size, size.size]))
         inverse = np.linalg.inv(every.T @ every + pulled)
-        scores = np.einsum("njp,nj->np", every.reshape(*y.shape, -1), found.left / found.noise)
+        scores = np.einsum(
+            "njp,nj->np", every.reshape(*y.shape, -1), projection.residual / projection.noise
+        )
         spread, near = np.zeros_like(inverse), np.bartlett(2 * self.width + 1)
-        for one in np.split(scores, np.cumsum(lengths)[:-1]):
-            spread += one.T @ convolve1d(one, near, axis=0, mode="constant")
+        for run_scores in np.split(scores, np.cumsum(lengths)[:-1]):
+            spread += run_scores.T @ convolve1d(run_scores, near, axis=0, mode="constant")
         freedom = y.size - every.shape[1]
         covariance = inverse @ spread @ inverse * (y.size / freedom)
         errors = np.sqrt(np.diag(covariance))[z.size :] / size
-        unsure = np.ones(found.values.shape, bool)
+        unsure = np.ones(projection.values.shape, bool)
         self.estimate = Estimate(
-            self._names, found.values, errors, found.noise, freedom, unsure=unsure
+            self._names, projection.values, errors, projection.noise, freedom, unsure=unsure
         )
         ours = self._ways @ covariance[: z.size, : z.size]
         self.filter_errors = np.sqrt(np.maximum((ours * self._ways).sum(-1), 0))

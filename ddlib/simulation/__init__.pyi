@@ -15,6 +15,5 @@ from .simulate import (
     LOG_STEP as LOG_STEP,
     REST as REST,
     follow as follow,
-    free_motion as free_motion,
     record as record,
 )

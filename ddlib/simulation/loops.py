@@ -9,10 +9,9 @@ import control
 import numpy as np
 
 from ddlib._check import (
-    finite_array,
     function_of,
+    instance,
     integer,
-    like,
     non_negative,
     number,
     shaped,
@@ -42,13 +41,12 @@ def predicted_response(
 
     Gravity's torque in the posture is compensated; what it adds beside it is part of the loop.
     """
-    like("arm", arm, "Arm")
-    like("controller", controller, "PID")
+    instance("arm", arm, Arm)
+    instance("controller", controller, PID)
     number("period", period, 1e-6, 10.0)
     number("seconds", seconds, 2 * period, 1e6 * period)
-    shaped("posture", posture, (2,))
+    posture = shaped("posture", posture, (2,))
     integer("joint", joint, 0, 1)
-    posture = finite_array("posture", posture, 2)
     joints = plant(arm.mass_matrix(posture), viscous, _gravity_stiffness(arm, posture))
     loop = closed_loop(joints, controller.kp, controller.ki, controller.kd, period)
     t = np.arange(round(seconds / period)) * period
@@ -70,18 +68,18 @@ def simulated_response(
     One run steps the reference by `step_deg`, a second one carries a load that would displace a
     spring of stiffness ``kp`` by as much. A loop that rings on has a bandwidth of NaN.
     """
-    like("arm", arm, "Arm")
-    like("controller", controller, "PID")
+    instance("arm", arm, Arm)
+    instance("controller", controller, PID)
     number("period", period, 1e-6, 10.0)
     number("seconds", seconds, 10 * period, 1e6 * period)
-    shaped("posture", posture, (2,))
+    posture = shaped("posture", posture, (2,))
     shaped("viscous", non_negative("viscous", viscous), "(2,)")
-    like("effects", effects, "Effects")
+    instance("effects", effects, Effects)
     integer("joint", joint, 0, 1)
     number("step_deg", step_deg, 0.0, open_low=True)
     size = np.deg2rad(step_deg)
     t = np.arange(round(seconds / period)) * period
-    target = np.zeros((2, t.size, 2)) + finite_array("posture", posture, 2)
+    target = np.zeros((2, t.size, 2)) + posture
     target[0, 1:, joint] += size
     holding, push = arm.gravity(posture), size * controller.kp[joint]
     load = np.zeros((2, 2)) + holding
@@ -95,7 +93,7 @@ def simulated_response(
     recording = follow(
         arm, controller, Trajectory(target, still, still), t, effects=effects, log_every=1
     )
-    deviation = recording.q_true[..., joint] - np.asarray(posture)[joint]
+    deviation = recording.q_true[..., joint] - posture[joint]
     step = deviation[0, 1:] / size
     averaging = np.hanning(t.size // 2)  # a window that averages what still swings
     compliance = (deviation[1, -averaging.size :] * averaging).sum() / averaging.sum() / push
@@ -138,14 +136,11 @@ def feedforward_system(arm: Arm, model, kp, kd, viscous=(0.0, 0.0)) -> control.I
     kp, kd, viscous : array_like, shape (2,)
         Feedback gains, N m/rad and N m s/rad, and the arm's viscous friction, N m s/rad.
     """
-    like("arm", arm, "Arm")
-    shaped("kp", kp, (2,))
-    shaped("kd", kd, (2,))
-    shaped("viscous", viscous, (2,))
+    instance("arm", arm, Arm)
     inverse = model.inverse_dynamics if isinstance(model, Arm) else model
     function_of("model", inverse, "model(q, qd, qdd) -> tau, or an Arm")
     kp, kd, viscous = (
-        non_negative(name, value, 2)
+        non_negative(name, shaped(name, value, (2,)))
         for name, value in (("kp", kp), ("kd", kd), ("viscous", viscous))
     )
 
@@ -183,10 +178,10 @@ def run_system(
 
     `start` are angles (rad) and velocities (rad/s); default: at rest at the first position.
     """
-    like("system", system, "System")
-    triple("reference", reference)
+    instance("system", system, control.InterconnectedSystem)
+    reference = Trajectory(*triple("reference", reference))
     t = shaped("t", t, "(time,)")
-    reference = Trajectory(*(shaped("reference", x, (t.size, 2)) for x in reference))
+    shaped("reference.q", reference.q, (t.size, 2))
     start = np.stack([reference.q[0], [0.0, 0.0]]) if start is None else start
     start = shaped("start", start, (2, 2)).ravel()
     answer = control.input_output_response(

@@ -17,8 +17,6 @@ from ddlib.effects import IDEAL, Effects, StickSlipFriction
 # than 2e-5 of itself a radian.
 _PHASE = 0.25
 
-_POSTURES = np.stack([np.zeros(13), np.linspace(0.0, np.pi, 13)], -1)  # elbows, from straight on
-
 
 class Plant:
     """An arm with those effects that act inside it: friction, motor, transmission."""
@@ -27,9 +25,7 @@ class Plant:
         self.arm, self.motor = arm, effects.motor
         sticks = [isinstance(f, StickSlipFriction) for f in effects.friction]
         self._sticking = tuple(f for f, s in zip(effects.friction, sticks) if s)
-        smooth = tuple(f for f, s in zip(effects.friction, sticks) if not s)
-        self._smooth = Effects(friction=tuple(f for f in smooth if not hasattr(f, "start")))
-        self._remembering = [f.start() for f in smooth if hasattr(f, "start")]
+        self._smooth = Effects(friction=tuple(f for f, s in zip(effects.friction, sticks) if not s))
         self._joint = effects.transmission[0] if effects.transmission else None
         self._links = self._joint.links(arm) if self._joint else arm
 
@@ -56,24 +52,10 @@ class Plant:
             tau = effect.shaft_torque(tau, x[..., -2:])
         if self._smooth.friction:
             tau = tau - self._smooth.friction_torque(v[..., -2:])
-        for friction in self._remembering:
-            tau = tau - friction.torque(v[..., -2:])
         return tau
 
-    def advance(self, x, v, tau, step, runs=True):
-        """State after one Runge-Kutta step (s; runs may differ) under constant torque.
-
-        Frictions with a memory slide half a step before it and half a step after it, those of the
-        named `runs` (bool, one each) alone.
-        """
-        for friction in self._remembering:
-            friction.slide(v[..., -2:], step / 2 * runs)
-        x, v = self._advance(x, v, tau, step)
-        for friction in self._remembering:
-            friction.slide(v[..., -2:], step / 2 * runs)
-        return x, v
-
-    def _advance(self, x, v, tau, step):
+    def advance(self, x, v, tau, step):
+        """State after one Runge-Kutta step (s; runs may differ) under constant torque."""
         if self._sticking:
             return self._advance_sticking(x, v, tau, step)
         return _rk4(lambda x, v: self._response(x, v, self._shaft(x, v, tau)), x, v, step)
@@ -164,8 +146,8 @@ class Plant:
         holds = (np.abs(inside) <= limit).all(-1, keepdims=True)
         best = np.where(holds, inside, best)
         broken = ~holds & (np.abs(best) >= limit) & resting
-        left = a - (B @ best[..., None])[..., 0]
-        return np.where(broken, np.sign(np.where(limit > 0, best, left)), way)
+        driving = a - (B @ best[..., None])[..., 0]
+        return np.where(broken, np.sign(np.where(limit > 0, best, driving)), way)
 
 
 def _rk4(acceleration, x, v, step):
@@ -214,25 +196,12 @@ def runge_kutta_steps(arm: Arm, effects: Effects, step: float) -> np.ndarray:
     """Runge-Kutta steps that one control period needs, for each run by itself.
 
     Friction acts like a first-order decay of joint speed, fastest at rest; RK4 is stable up to 2.78
-    times its time constant, 2 is used. Of the fastest swing of springs (those of shafts, and of
-    bristles that hold a joint) a step covers a quarter of a radian.
+    times its time constant, 2 is used. Of the fastest swing of springs a step covers a quarter of a
+    radian.
     """
-    parts = _smooth_substeps(arm, effects, step)
-    bristles = [np.asarray(f.stiffness) for f in effects.friction if hasattr(f, "start")]
-    if not bristles:
-        return parts
-    stiffness, mass = sum(bristles), arm.mass_matrix(_POSTURES)
-    if effects.transmission:
-        shaft = effects.transmission[0]
-        stiffness, mass = stiffness + np.asarray(shaft.stiffness), np.diag(shaft.motor_inertia)
-    held = np.linalg.solve(mass, stiffness[..., None, :, None] * np.eye(2))
-    return np.maximum(parts, _count(np.sqrt(np.linalg.eigvals(held)), step / _PHASE))
-
-
-def _smooth_substeps(arm: Arm, effects: Effects, step: float) -> np.ndarray:
-    """`runge_kutta_steps` but for frictions with a memory."""
     slope = sum((np.asarray(f.slope) for f in effects.friction if hasattr(f, "slope")), np.zeros(2))
-    q = _POSTURES
+    elbow = np.linspace(0.0, np.pi, 13)
+    q = np.stack([0 * elbow, elbow], -1)
     slope = slope[..., None, :, None] * np.eye(2)
     if not effects.transmission:
         return _count(np.linalg.eigvals(np.linalg.solve(arm.mass_matrix(q), slope)), step / 2)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddlib._check import filled, finite_array, like, number, told
+from ddlib._check import filled, finite_array, instance, number, told
 from ddlib.dynamics import Arm
 from ddlib.trajectories import Trajectory
 
@@ -108,8 +108,8 @@ def residual_torque(arm: Arm, recording: Recording) -> np.ndarray:
     time; its mean is taken. Lagrange-Euler's is taken in the middle of the period, with the mean
     acceleration; the error of that is of second order in the period.
     """
-    like("arm", arm, "Arm")
-    like("recording", recording, "Recording")
+    instance("arm", arm, Arm)
+    instance("recording", recording, Recording)
     step, period = recording.step, recording.control_step
     if not period:
         raise ValueError(f"recording must have a control_step above 0, got {period}")
@@ -152,8 +152,8 @@ def score(arm: Arm, recording: Recording, seconds: float | None = None) -> Score
     without the first third. Of the hand, mm: `hand`, RMS without that third, and at the `turn`
     half-way. `effort`: RMS of the torque vector, N m.
     """
-    like("arm", arm, "Arm")
-    like("recording", recording, "Recording")
+    instance("arm", arm, Arm)
+    instance("recording", recording, Recording)
     if seconds is not None:
         recording = replace(recording, duration=number("seconds", seconds, 0.0, open_low=True))
     t, error, moving = recording.t, np.rad2deg(recording.tracking_error), recording.motion

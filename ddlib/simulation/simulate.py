@@ -7,11 +7,10 @@ import numpy as np
 from ddlib._check import (
     filled,
     finite_array,
+    instance,
     integer,
-    known_options,
     number,
     one_of,
-    regular,
     seed_number,
     shaped,
     told,
@@ -60,9 +59,12 @@ class _Streams:
 
 def _generator(seed):
     """Source of noise for one seed (all runs share it) or for an array of them."""
-    if np.ndim(seed) == 0:
+    try:
+        seeds = np.asarray(seed)
+    except ValueError:  # lists of unequal lengths
+        seeds = np.array([np.nan])
+    if seeds.ndim == 0:
         return np.random.default_rng(seed_number("seed", seed))
-    seeds = np.asarray(seed)
     if seeds.dtype.kind not in "iu":
         raise TypeError(f"seed must be an integer or an array of integers, got {told(seed)}")
     if not seeds.size or (seeds < 0).any():
@@ -79,47 +81,9 @@ def _held(plant: Plant, x, v, tau, seconds, parts):
         return x, v
     parts = parts[..., None]
     for k in range(most):  # runs that need fewer steps wait for the others
-        x_next, v_next = plant.advance(x, v, tau, seconds / parts, k < parts)
+        x_next, v_next = plant.advance(x, v, tau, seconds / parts)
         x, v = np.where(k < parts, x_next, x), np.where(k < parts, v_next, v)
     return x, v
-
-
-def free_motion(arm: Arm, q, qd, seconds, step=0.001, effects: Effects = IDEAL):
-    """The arm left to itself from angles `q` (rad) and velocities `qd` (rad/s): times, `q`, `qd`.
-
-    Of the effects those act that are inside the plant: friction, motor, transmission.
-    """
-    _check_plant(arm, effects)
-    q, qd = np.broadcast_arrays(finite_array("q", q, 2), finite_array("qd", qd, 2))
-    number("seconds", seconds, 0.0, open_low=True)
-    number("step", step, 0.0, seconds, open_low=True)
-    steps = seconds / step
-    if abs(steps - round(steps)) > 1e-6:
-        raise ValueError(f"seconds must be a whole number of steps, got {steps:g}")
-    t = np.arange(round(steps) + 1) * step
-    plant = Plant(arm, effects)
-    x, v = _moving(plant, q, qd)
-    states = [(x, v)]
-    zero = np.zeros_like(q)
-    for _ in t[1:]:
-        states.append(plant.advance(*states[-1], zero, step))
-    states = [np.broadcast_arrays(*series) for series in zip(*states)]
-    q, qd = (np.stack(series, -2)[..., :2] for series in states)
-    return t, q, qd
-
-
-def _check_plant(arm, effects) -> None:
-    """Refuse what is no arm of two joints, and effects that are not collected in `Effects`."""
-    if not isinstance(arm, Arm):
-        raise TypeError(
-            "arm must be an Arm, which has two joints, with base parameters a, b, d and two "
-            f"lengths, got {type(arm).__name__}"
-        )
-    if not isinstance(effects, Effects):
-        raise TypeError(
-            "effects must be Effects with its parts in tuples, like "
-            f"Effects(friction=(ViscousFriction((0.5, 0.15)),)), got {told(effects)}"
-        )
 
 
 def _moving(plant: Plant, q, qd):
@@ -167,18 +131,17 @@ def follow(
     duration : float, optional
         Length of the motion from 0 s on; default: where the reference moves.
     """
-    triple("reference", reference)
-    regular("seed", seed)
-    _check_plant(arm, effects)
+    reference = Trajectory(*triple("reference", reference))
+    instance("arm", arm, Arm)
+    instance("effects", effects, Effects)
     t = shaped("t", t, "(time,)")
     integer("samples of t", t.size, 2)
-    q = shaped("reference.q", reference[0], f"(..., {t.size}, 2)")
-    names = ("reference.qd", "reference.qdd")
-    reference = Trajectory(q, *(shaped(n, x, q.shape) for n, x in zip(names, reference[1:])))
+    shaped("reference.q", reference.q, f"(..., {t.size}, 2)")
     controller = as_controller(controller)
     step = equal_step(t)
     integer("log_every", log_every, 1, t.size - 1)
     one_of("velocity", velocity, ("tachometer", "difference"))
+    rng = _generator(seed)
     computing_time = effects.computing_time
     if computing_time > step * (1 - 1e-9):
         raise ValueError(
@@ -188,7 +151,6 @@ def follow(
     reference = Trajectory(*(_time_first(x) for x in reference))
     first = reference.q[..., 0, :]
     start = _initial_state(first, (first, np.zeros(2)) if start is None else start)
-    rng = _generator(seed)
     law = controller.start(reference, step)
     plant, parts = Plant(arm, effects), runge_kutta_steps(arm, effects, step)
     x, v = _moving(plant, *start)
@@ -260,7 +222,10 @@ def record(
     control_step: float = CONTROL_STEP,
     log_step: float = LOG_STEP,
     duration: float = MOTION_SECONDS,
-    **options,
+    effects: Effects = IDEAL,
+    seed: int | np.ndarray = 0,
+    velocity: str = "tachometer",
+    start=None,
 ) -> Recording:
     """Record pick-and-place motions as in section 4 of the paper.
 
@@ -277,11 +242,10 @@ def record(
         Rest before and after the motion, and its length, s.
     control_step, log_step : float
         Periods of control and log, s; the second a multiple of the first.
-    **options
-        ``effects``, ``seed``, ``velocity`` and ``start``, as in `follow`.
+    effects, seed, velocity, start
+        As in `follow`.
     """
     filled("extents_deg", extents_deg)
-    known_options("record", options, ("effects", "seed", "velocity", "start"))
     number("control_step", control_step, 1e-5, 0.1)
     number("log_step", log_step, control_step, 1.0)
     ratio = log_step / control_step
@@ -291,5 +255,7 @@ def record(
     if round(rest / control_step) % round(ratio):
         raise ValueError(f"rest must be a multiple of log_step={log_step:g}, got {rest:g}")
     reference = pick_and_place(extents_deg, t, duration)
-    options |= {"log_every": round(ratio), "duration": duration}
-    return follow(arm, controller, reference, t, **options)
+    return follow(
+        arm, controller, reference, t, effects=effects, seed=seed, log_every=round(ratio),
+        velocity=velocity, start=start, duration=duration,
+    )  # fmt: skip

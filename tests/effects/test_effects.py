@@ -6,13 +6,10 @@ from hypothesis import given, settings, strategies as st
 
 from ddlib.effects import (
     Backlash,
-    ComputingTime,
     Delay,
-    Effects,
     FlexibleJoint,
     Noise,
     Quantisation,
-    ViscousFriction,
 )
 
 
@@ -91,17 +88,3 @@ def test_play_by_hand_per_joint_and_without_gap():
 
 
 SHAFT = FlexibleJoint((2e4, 6e3), (0.4, 0.15))
-
-
-def test_refusals():
-    viscous = ViscousFriction((1, 1))
-    for kind, name, bad, error in (
-        (Quantisation.encoder, "bits", 64, ValueError),
-        (Delay, "periods", -1, ValueError),
-        (Backlash, "gap", (0.1, np.nan), ValueError),
-        (Effects, "transmission", (SHAFT, SHAFT), ValueError),
-        (Effects, "friction", viscous, TypeError),
-        (Effects, "encoder", (ComputingTime(0.001),), TypeError),
-    ):
-        with pytest.raises(error, match=rf"^{name} must"):
-            kind(**{name: bad})

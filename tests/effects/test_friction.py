@@ -42,12 +42,3 @@ def test_slope_is_the_steepest_rise(friction):
     qd = np.linspace(-0.001, 0.001, 2_001)[:, None] * np.ones(2)
     rise = np.diff(friction.torque(qd), axis=0) / np.diff(qd, axis=0)
     np.testing.assert_allclose(rise.max(0), friction.slope, rtol=1e-3)
-
-
-def test_refusals():
-    good = dict(level=(0.1, 0.1), breakaway=(0.2, 0.2))
-    with pytest.raises(ValueError, match=r"^coefficient must"):
-        ViscousFriction((-0.1, 0.1))
-    for name, bad in (("level", (0.1, -0.1)), ("breakaway", (0.2, 0.05)), ("speed", 0.0)):
-        with pytest.raises(ValueError, match=rf"^{name} must"):
-            StickSlipFriction(**{**good, name: bad})

@@ -11,7 +11,6 @@ from ddlib.control import pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM
 from ddlib.effects import (
     CMU_DD_ARM_II_EFFECTS,
-    IDEAL,
     ComputingTime,
     CoulombFriction,
     Effects,
@@ -142,20 +141,6 @@ def test_a_torque_counts_over_the_time_in_which_it_acts():
         exact = (after - before) / hold
         found = bumps_held(t, width, length, begin, hold)
         np.testing.assert_allclose(found, exact, rtol=0, atol=1e-6 * exact.max())
-
-
-def test_refusals():
-    run = record(CMU_DD_ARM_II, SMOOTH, APPENDIX_I[0], effects=IDEAL, duration=1.5)
-    for width in (0.11, 1.6):
-        with pytest.raises(ValueError, match=r"width must lie in \[0.12, 1.5\]"):
-            by_modulation(run, width=width)
-    with pytest.raises(ValueError, match="recording must have 12 samples of motion"):
-        by_modulation(replace(run, duration=0.1))
-    lines = replace(run, q=np.repeat(run.q[..., ::6, :], 6, axis=-2)[..., : run.t.size, :])
-    with pytest.raises(ValueError, match="got 0: dry friction asks for a joint that moves on"):
-        least_squares(by_modulation(lines))  # readings that stay for six lines
-    with pytest.raises(ValueError, match="width must be an odd number"):
-        by_smoothing(run, 10)
 
 
 def test_no_window_makes_smoothing_honest():

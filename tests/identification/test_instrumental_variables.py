@@ -113,15 +113,3 @@ def test_a_first_estimates_simulation_is_an_instrument_for_the_arm(bits):
         assert not plain.told[names.index("b")], "noise makes most of its column"
     share = found.covers(truth).mean(0)
     assert share.min() > 0.8 and share.mean() > 0.9
-
-
-def test_refusals():
-    equations, instruments = noisy(1, 20, 0.1)
-    with pytest.raises(ValueError, match=r"instruments must have \[20\] equations by joint"):
-        cut = Equations(("p", "r"), (instruments.regressor[0][..., :9, :],), instruments.torque)
-        instrumental_variables(equations, cut)
-    with pytest.raises(ValueError, match="instruments must have the names"):
-        instrumental_variables(equations, Equations(("p", "s"), *instruments[1:]))
-    with pytest.raises(ValueError, match="instruments must determine all of p, r"):
-        nothing = Equations(("p", "r"), (0 * instruments.regressor[0],), instruments.torque)
-        instrumental_variables(equations, nothing)

@@ -9,7 +9,7 @@ from scipy.stats import multivariate_normal
 
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II
-from ddlib.effects import CMU_DD_ARM_II_EFFECTS, IDEAL, Quantisation
+from ddlib.effects import CMU_DD_ARM_II_EFFECTS, Quantisation
 from ddlib.identification import (
     FRICTION,
     GRAVITY,
@@ -25,7 +25,6 @@ from ddlib.identification import (
     smoothers,
     true_parameters,
 )
-from ddlib.simulation import record
 from ddlib.trajectories import APPENDIX_I
 
 LOOP = pd((300.0, 90.0), (35.0, 10.0))
@@ -177,18 +176,6 @@ def test_inertias_within_two_percent_where_parabolas_miss_by_more(arm, bits):
         off[how] = np.abs(found / truth - 1)[:heavy].max()
     assert off["kalman"] < 0.03 and off["butterworth"] < 0.03
     assert off["parabolas"] > 2 * max(off["kalman"], off["butterworth"])
-
-
-def test_refusals():
-    run = record(CMU_DD_ARM_II, LOOP, APPENDIX_I[0], effects=IDEAL, duration=1.5)
-    with pytest.raises(ValueError, match=r"cutoff must lie in \(0, 49.9\], got 60"):
-        by_butterworth(run, 60.0)
-    with pytest.raises(ValueError, match=r"cutoff must be above .* Hz for 250 samples, got 0.1"):
-        by_butterworth(run, 0.1)
-    with pytest.raises(ValueError, match="q must have 12 samples or more, got 5"):
-        kalman_states(np.zeros((5, 2)), STEP)
-    with pytest.raises(ValueError, match=r"noise must lie in \(0, inf\], got 0"):
-        by_kalman(run, noise=0.0)
 
 
 def test_decimals_of_a_text_do_not_pass_for_the_noise_of_an_encoder():

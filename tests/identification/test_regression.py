@@ -89,20 +89,6 @@ def test_excitation_is_the_regressors_condition_number():
     assert excitation(still) == np.inf
 
 
-def test_refusals():
-    motion = states(3)
-    y = torque(CMU_DD_ARM_II, motion)
-    with pytest.raises(ValueError, match="names must be one of 'a', 'b', 'd'"):
-        from_states(*motion, y, ("a", "mass"))
-    with pytest.raises(ValueError, match="equations must be more than the 9"):
-        least_squares(from_states(*motion, y, ALL))
-    still = states(20)[0]
-    with pytest.raises(ValueError, match="must have a torque, got zeros throughout"):
-        least_squares(from_states(still, 0 * still, 0 * still, 0 * still))
-    with pytest.raises(ValueError, match="must determine some of a, b, d; they do not"):
-        least_squares(from_states(still, 0 * still, 0 * still, 1 + 0 * still))
-
-
 def locked(encoder=0.0, noise=0.01, elbow=True, seed=0):
     """Two sines at the shoulder, the elbow held straight; a, b, d = 1, .2, .3."""
     rng, t = np.random.default_rng(seed), T

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
 from ddlib import identification
 from ddlib.dynamics import Arm
@@ -102,23 +101,3 @@ def test_columns_by_name_are_parameters_of_each_joint():
     row = [v for name, v in found.parameters.items() if name.endswith("joint 3")]
     expected = np.linalg.lstsq(joint_columns(x @ found.first.T, 2), y[:, 2])[0]
     np.testing.assert_allclose(row, expected, rtol=1e-6, atol=1e-9)
-
-
-ONE = motions(1)
-BAD = {
-    "width must be odd.*got 8": lambda: FilteredEquations(RIGID, 8, STEP),
-    "learn must be one of 'position'.*got 'jerk'": lambda: made(ONE, ONE, learn=("jerk",)),
-    "pull must lie in .0, inf.*got -1": lambda: made(ONE, ONE, -1),
-    "pull must be given if there is a single run": lambda: made(ONE, ONE, None),
-    r"torques\[0\] must have shape \(200, 2\)": lambda: made(ONE, [ONE[0][:9]]),
-    "torques must vary at each joint": lambda: made(ONE, [np.ones((200, 2))]),
-    r"runs\[0\] must have 7 samples or more, got 5": lambda: made([ONE[0][:5]], [ONE[0][:5]]),
-    "runs must determine all parameters": lambda: made([np.ones((200, 2))], ONE),
-    "step of 0.02 s, got 0.01 s": lambda: made(JOINT_DAMPING.record(), None, step=0.02),
-}
-
-
-@pytest.mark.parametrize("said", BAD)
-def test_bad_input_is_named(said):
-    with pytest.raises(ValueError, match=said):
-        BAD[said]()

@@ -5,7 +5,7 @@ import pytest
 
 from ddlib.control import PID, Feedforward, pd
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM, SecondOrderModel
-from ddlib.effects import Effects, Load, ViscousFriction
+from ddlib.effects import Effects, ViscousFriction
 from ddlib.setups import KD, KP
 from ddlib.simulation import (
     Recording,
@@ -128,15 +128,3 @@ def test_the_smooth_motion_goes_out_and_back_without_a_jump():
         np.testing.assert_allclose(slope[:, inside], upper[:, inside], atol=2e-3 * speed**2)
     steps = np.abs(np.diff(motion.qd, axis=-2)).max()
     assert steps < 2 * np.abs(motion.qdd).max() * (t[1] - t[0])  # continuous at both ends
-
-
-def test_refusals():
-    for name, call in (
-        ("torque", lambda: Load((1.0, np.nan))),
-        ("posture", lambda: SecondOrderModel(ARM, (0.0,))),
-        ("joint", lambda: simulated_response(ARM, PD, viscous=VISCOUS, joint=2)),
-        ("kp", lambda: feedforward_system(ARM, ARM, (1, 2, 3), KD)),
-        ("seconds", lambda: score(ARM, record(ARM, PD, APPENDIX_I[0]), 0)),
-    ):
-        with pytest.raises(ValueError, match=rf"^{name} must"):
-            call()
