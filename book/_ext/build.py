@@ -98,7 +98,7 @@ def execute(cache, paths: list[Path], say=print) -> list[Path]:
         for path, notebook in new.items()
     }
     ended, kept, waiting = [], 0, set(running)
-    started = told = time.monotonic()
+    started = reported = time.monotonic()
     try:
         while waiting:
             finished, waiting = wait(waiting, PAUSE, FIRST_COMPLETED)
@@ -115,9 +115,9 @@ def execute(cache, paths: list[Path], say=print) -> list[Path]:
                     cache.cache_notebook_bundle(bundle, check_validity=False, overwrite=True)
                     kept += 1
             now = time.monotonic()
-            if not waiting or now - told >= PAUSE:
+            if not waiting or now - reported >= PAUSE:
                 say(f"    {kept} of {len(new)} notebooks after {now - started:.0f} s")
-                told = now
+                reported = now
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
     return ended

@@ -37,13 +37,13 @@ def forget_types(app, what, name, obj, options, signature, returned):
     That are a dataclass's fields, which have an entry each with type and text, and names that a
     reader cannot look up.
     """
-    told = app.env.temp_data.get("annotations", {}).get(name, {})
+    types = app.env.temp_data.get("annotations", {}).get(name, {})
     own = set()
     if isinstance(obj, type) and is_dataclass(obj):
         texts = ModuleAnalyzer.for_module(obj.__module__).find_attr_docs()
         own = {field.name for field in fields(obj) if (obj.__qualname__, field.name) in texts}
-    for key in [key for key, kind in told.items() if key in own or PRIVATE.search(kind)]:
-        del told[key]
+    for key in [key for key, kind in types.items() if key in own or PRIVATE.search(kind)]:
+        del types[key]
 
 
 COLON = "\u2236"

@@ -32,25 +32,25 @@ def entry(kind: str, key: str, fields: dict[str, str]) -> str:
 def people(authors: list[dict]) -> str:
     """Authors as BibTeX has them; a name of a group keeps its words together."""
     named = (
-        f"{one['family-names']}, {one['given-names']}" if "family-names" in one
-        else f"{{{one['name']}}}"
-        for one in authors
+        f"{author['family-names']}, {author['given-names']}" if "family-names" in author
+        else f"{{{author['name']}}}"
+        for author in authors
     )  # fmt: skip
     return " and ".join(named)
 
 
 def bibtex(root: Path) -> str:
     """The book, then what it refers to."""
-    said = yaml.safe_load((root / FILE).read_text(encoding="utf-8"))
-    year = str(said["date-released"])[:4]
-    fields = {"author": people(said["authors"]), "title": f"{{{said['title']}}}", "year": year}
-    found = [entry("misc", f"ddlib{year}", {**fields, "note": f"Version {said['version']}"})]
-    for one in said["references"]:
-        key = one["authors"][0]["family-names"] + str(one["year"])
-        fields = {"author": people(one["authors"]), "title": f"{{{one['title']}}}"}
-        fields |= {"institution": one["institution"]["name"], "number": one["number"]}
-        found.append(entry("techreport", key, {**fields, "year": one["year"]}))
-    return "\n\n".join(found)
+    cited = yaml.safe_load((root / FILE).read_text(encoding="utf-8"))
+    year = str(cited["date-released"])[:4]
+    fields = {"author": people(cited["authors"]), "title": f"{{{cited['title']}}}", "year": year}
+    entries = [entry("misc", f"ddlib{year}", {**fields, "note": f"Version {cited['version']}"})]
+    for reference in cited["references"]:
+        key = reference["authors"][0]["family-names"] + str(reference["year"])
+        fields = {"author": people(reference["authors"]), "title": f"{{{reference['title']}}}"}
+        fields |= {"institution": reference["institution"]["name"], "number": reference["number"]}
+        entries.append(entry("techreport", key, {**fields, "year": reference["year"]}))
+    return "\n\n".join(entries)
 
 
 class Citation(SphinxDirective):
@@ -92,8 +92,8 @@ def version(root: Path, public: str) -> list[str]:
 def lead(app, page, template, context, doctree):
     """The footer: which version this is, and links to those of the pages that there are."""
     links = (
-        f'<a href="{context["pathto"](name)}">{told}</a>'
-        for name, told in FOOTER.items()
+        f'<a href="{context["pathto"](name)}">{words}</a>'
+        for name, words in FOOTER.items()
         if name in app.env.found_docs
     )
     context["theme_extra_footer"] = " · ".join([*version(Path(app.srcdir), repository()), *links])

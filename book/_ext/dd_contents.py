@@ -49,8 +49,8 @@ def lead_on(app, page, template, context, doctree):
     for way, other in zip(("prev", "next"), neighbours(pages, page)):
         if other and context.get(way):
             title = app.env.titles[other]
-            told = app.builder.render_partial(title)["title"]
-            context[way] = {"link": app.builder.get_relative_uri(page, other), "title": told}
+            text = app.builder.render_partial(title)["title"]
+            context[way] = {"link": app.builder.get_relative_uri(page, other), "title": text}
 
 
 def setup(app):

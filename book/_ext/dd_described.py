@@ -7,39 +7,26 @@ metadata, as ``mystnb: figure: alt``, so that open code stays short; a page's fi
 from __future__ import annotations
 
 import json
+import re
 from html import escape
 from pathlib import Path
 
 from docutils import nodes
-from rewriter import Rewriter
 from sphinx.transforms import SphinxTransform
 
-
-class Pictures(Rewriter):
-    """The SVG pictures of some markup, whose names get more words."""
-
-    def __init__(self, text: str, words: str):
-        self.words = words
-        super().__init__(text)
-
-    def handle_starttag(self, name, attributes):
-        before, label, after = self.get_starttag_text().partition(' aria-label="')
-        if name == "svg" and label:
-            told, _, after = after.partition('"')
-            new = f'{before}{label}{told} {escape(self.words)}"{after}'
-            self.change(self.start, self.end, new)
+NAME = re.compile(r'(<svg\b[^>]*? aria-label="[^"]*)"')
 
 
 def described(path: Path) -> dict[str, str]:
     """What metadata of a notebook say of its figures, by their names."""
     cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
-    told = (cell["metadata"].get("mystnb", {}).get("figure", {}) for cell in cells)
-    return {one["name"]: one["alt"] for one in told if "alt" in one}
+    figures = (cell["metadata"].get("mystnb", {}).get("figure", {}) for cell in cells)
+    return {figure["name"]: figure["alt"] for figure in figures if "alt" in figure}
 
 
 def with_words(text: str, alt: str) -> str:
     """The markup of a figure, in all its forms, with more words in its name."""
-    return Pictures(text, alt).changed()
+    return NAME.sub(lambda name: f'{name[1]} {escape(alt)}"', text)
 
 
 class Describe(SphinxTransform):
@@ -49,9 +36,9 @@ class Describe(SphinxTransform):
 
     def apply(self, **kwargs):
         path = Path(self.env.doc2path(self.env.docname))
-        told = described(path) if path.suffix == ".ipynb" else {}
-        for figure in self.document.findall(nodes.figure) if told else ():
-            alt = next((told[name] for name in figure["names"] if name in told), "")
+        texts = described(path) if path.suffix == ".ipynb" else {}
+        for figure in self.document.findall(nodes.figure) if texts else ():
+            alt = next((texts[name] for name in figure["names"] if name in texts), "")
             for raw in list(figure.findall(nodes.raw)) if alt else ():
                 raw.replace_self(nodes.raw("", with_words(raw.astext(), alt), format="html"))
 

@@ -76,9 +76,9 @@ class HeadExercises(SphinxTransform):
                 if not node.astext().strip():
                     section.remove(node)
             elif number and isinstance(node, nodes.raw):
-                said = f"<summary>Solution of exercise {number}</summary>"
-                told = node.astext().replace(SOLUTION, said)
-                node.replace_self(nodes.raw("", told, format="html"))
+                summary = f"<summary>Solution of exercise {number}</summary>"
+                text = node.astext().replace(SOLUTION, summary)
+                node.replace_self(nodes.raw("", text, format="html"))
             elif number and "prompt_show" in node:
                 for prompt in ("prompt_show", "prompt_hide"):
                     joint = " of" if node[prompt] == "The check" else ","
@@ -99,8 +99,8 @@ class NameFolds(SphinxTransform):
             section = cell.parent
             while section is not None and not isinstance(section, nodes.section):
                 section = section.parent
-            said = caption or (section and section[0])
-            name = re.split(r"(?<=\w)[.:?] ", said.astext(), maxsplit=1)[0] if said else ""
+            above = caption or (section and section[0])
+            name = re.split(r"(?<=\w)[.:?] ", above.astext(), maxsplit=1)[0] if above else ""
             known[name] = known.get(name, 0) + 1
             again = f", part {known[name]}" if known[name] > 1 else ""
             for prompt in ("prompt_show", "prompt_hide"):
@@ -113,8 +113,8 @@ def visit_fold(translator, node):
     translator.body.append(f'<details class="admonition hide {classes}">\n<summary>\n')
     for state, prompt in (("collapsed", "prompt_show"), ("expanded", "prompt_hide")):
         seen, _, name = node[prompt].partition(NAMED)
-        told = f'<span class="visually-hidden">: {escape(name)}</span>' if name else ""
-        translator.body.append(f'<p class="{state} admonition-title">{escape(seen)}{told}</p>\n')
+        hidden = f'<span class="visually-hidden">: {escape(name)}</span>' if name else ""
+        translator.body.append(f'<p class="{state} admonition-title">{escape(seen)}{hidden}</p>\n')
     translator.body.append("</summary>\n")
 
 

@@ -94,8 +94,8 @@ class LessonRole(SphinxRole):
             return self.made(), []
         except LookupError:
             message = f"no such {self.kind}: {self.text}"
-            told = self.inliner.reporter.error(message, line=self.lineno)
-            return [self.inliner.problematic(self.rawtext, self.rawtext, told)], [told]
+            error = self.inliner.reporter.error(message, line=self.lineno)
+            return [self.inliner.problematic(self.rawtext, self.rawtext, error)], [error]
 
     def beside(self, name: str) -> Lesson:
         page = f"{self.env.docname.rpartition('/')[0]}/{name}"
@@ -227,7 +227,7 @@ class Objectives(LessonDirective):
 
     def items(self, of: Lesson, at: str) -> nodes.bullet_list:
         """The list of a lesson's objectives; `at` is its address, "" on its own page."""
-        return nodes.bullet_list("", *(self.item(each, of, at) for each in of.objectives))
+        return nodes.bullet_list("", *(self.item(objective, of, at) for objective in of.objectives))
 
     def item(self, objective: Objective, of: Lesson, at: str) -> nodes.list_item:
         """An objective with links to its tests: "derive ... (exercise 1, question 2)"."""

@@ -33,10 +33,10 @@ def repository(root: Path = ROOT) -> str:
     if not named:
         asked = ["git", "-C", str(root), "config", "--get", "remote.origin.url"]
         try:
-            told = subprocess.run(asked, capture_output=True, text=True, check=False).stdout
+            remote = subprocess.run(asked, capture_output=True, text=True, check=False).stdout
         except OSError:  # no git here
-            told = ""
-        named = found[1] if (found := REMOTE.fullmatch(told.strip())) else ""
+            remote = ""
+        named = found[1] if (found := REMOTE.fullmatch(remote.strip())) else ""
     return named if NAME.fullmatch(named) else ""
 
 

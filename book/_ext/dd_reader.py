@@ -89,8 +89,8 @@ class Known:
         people = entry.persons.get("author") or entry.persons.get("editor") or []
         names = [" ".join((*p.prelast_names, *p.last_names)) for p in people]
         names = [re.sub("[{}]", "", codecs.decode(name, "ulatex")) for name in names]
-        told = f"{names[0]} et al." if len(names) > 2 else " and ".join(names)
-        return told or entry.fields.get("title", key), entry.fields.get("year", "")
+        authors = f"{names[0]} et al." if len(names) > 2 else " and ".join(names)
+        return authors or entry.fields.get("title", key), entry.fields.get("year", "")
 
 
 def values(folder: Path, page: str) -> dict[str, object]:
@@ -120,11 +120,11 @@ class Plain:
         """The book's name of a page that this one names: from its folder, or from the top."""
         return posixpath.normpath(posixpath.join("/", posixpath.dirname(self.page), target))[1:]
 
-    def link(self, page: str, told: str) -> str:
+    def link(self, page: str, title: str) -> str:
         """A link to a page's notebook, from this one's; its title alone if it has none."""
         if not (self.known.root / f"{page}.ipynb").is_file():
-            return f"*{told}*"
-        return f"[{told}]({posixpath.relpath(page, posixpath.dirname(self.page))}.ipynb)"
+            return f"*{title}*"
+        return f"[{title}]({posixpath.relpath(page, posixpath.dirname(self.page))}.ipynb)"
 
     def text(self, source: str) -> str:
         """A cell's markdown."""
@@ -182,10 +182,10 @@ class Plain:
         key, form = (key, form) if key else (inside, "")
         value = self.glued.get(key, "?")
         try:
-            told = HYPHEN.sub("−", format(value, form))
+            number = HYPHEN.sub("−", format(value, form))
         except (TypeError, ValueError):
-            told = str(value)
-        return f"{MARK[0]}{told}{MARK[1]}"
+            number = str(value)
+        return f"{MARK[0]}{number}{MARK[1]}"
 
 
 def _keys(target: str) -> list[str]:
@@ -210,8 +210,8 @@ def reader_notebook(of: Lesson, known: Known, glued: dict):
         cells.append(made)
         figure = cell.metadata.get("mystnb", {}).get("figure")
         if figure:
-            told = f"**{known.figure(figure['name'])}.** {plain.text(figure['caption'].strip())}"
-            cells.append(nbformat.v4.new_markdown_cell(told))
+            text = f"**{known.figure(figure['name'])}.** {plain.text(figure['caption'].strip())}"
+            cells.append(nbformat.v4.new_markdown_cell(text))
     setup = nbformat.v4.new_code_cell(
         SETUP.format(address=address(repository()), folder=posixpath.dirname(of.page))
     )

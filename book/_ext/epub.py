@@ -91,13 +91,18 @@ def tidy(body: ElementTree.Element, files: dict[str, str], kept: dict[str, Path]
 
 def make(found: list[dict], path: Path) -> None:
     """Write the book, whole or not at all."""
-    names = [one["name"].removeprefix("book/") for one in found]
-    bodies = {name: parsed(one["body"]) for name, one in zip(names, found)}
-    solved = [(one["title"], parsed(one["solutions"])) for one in found if one["solutions"]]
+    names = [chapter["name"].removeprefix("book/") for chapter in found]
+    bodies = {name: parsed(chapter["body"]) for name, chapter in zip(names, found)}
+    solved = [
+        (chapter["title"], parsed(chapter["solutions"]))
+        for chapter in found
+        if chapter["solutions"]
+    ]
     files = places([*bodies.items(), *((SOLUTIONS, body) for _, body in solved)])
     kept: dict[str, Path] = {}
     pages = [
-        Page(name, one["title"], tidy(bodies[name], files, kept)) for name, one in zip(names, found)
+        Page(name, chapter["title"], tidy(bodies[name], files, kept))
+        for name, chapter in zip(names, found)
     ]
     answers = "".join(
         f"<h2>{escape(title)}</h2>{tidy(body, files, kept)}" for title, body in solved
@@ -106,7 +111,7 @@ def make(found: list[dict], path: Path) -> None:
     images = {name: KINDS[Path(name).suffix] for name in kept}
     page = pdf.template("page.xhtml").render
     nav = pdf.template("nav.xhtml").render(pages=pages)
-    texts = {f"{one.name}.xhtml": page(title=one.title, body=one.body) for one in pages}
+    texts = {f"{made.name}.xhtml": page(title=made.title, body=made.body) for made in pages}
     texts["look.css"] = (pdf.HERE / "epub.css").read_text(encoding="utf-8")
     texts["content.opf"] = pdf.template("content.opf").render(
         title=TITLE, pages=pages, images=images

@@ -34,8 +34,8 @@ def lacking(needs: list[str]) -> tuple[list[str], list[str]]:
 if __name__ == "__main__":
     needs = tomllib.loads(PROJECT.read_text(encoding="utf-8"))["project"]["dependencies"]
     absent, other = lacking(needs)
-    for told in other:
-        print(told)
+    for sentence in other:
+        print(sentence)
     if absent:
         print("Installing", ", ".join(absent))
         subprocess.run([sys.executable, "-m", "pip", "install", "--quiet", *absent], check=True)

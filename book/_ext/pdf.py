@@ -97,11 +97,11 @@ def joined(volume: str, found: list[dict]) -> str:
         title=TITLE,
         name=VOLUMES[volume],
         address=site(repository()) if repository() else "",
-        styles=dict.fromkeys(style for one in found for style in one["styles"]),
+        styles=dict.fromkeys(style for chapter in found for style in chapter["styles"]),
         look=(HERE / "volume.css").read_text(encoding="utf-8"),
         chapters=found,
         unannounced=UNANNOUNCED,
-        solved=[one for one in found if one["solutions"]],
+        solved=[chapter for chapter in found if chapter["solutions"]],
         entries=index(found),
     )
 
@@ -109,8 +109,8 @@ def joined(volume: str, found: list[dict]) -> str:
 def index(found: list[dict]) -> list[tuple[str, list[str]]]:
     """Words, each with where a chapter has it first."""
     places: dict[str, list[str]] = {}
-    for one in found:
-        for word, anchor in one["terms"]:
+    for chapter in found:
+        for word, anchor in chapter["terms"]:
             places.setdefault(word, []).append(anchor)
     words = sorted(places, key=str.lower)
     return [(word, places[word]) for word in words if len(places[word]) <= MOST_PLACES]
@@ -134,10 +134,10 @@ def titled(entry, headings: list[str]) -> None:
 
     while entry is not None:
         entry = entry.get_object()
-        told = Counter("".join(entry["/Title"].split()))
+        letters = Counter("".join(entry["/Title"].split()))
         for k, heading in enumerate(headings):
             once = Counter("".join(heading.split()))
-            if once <= told <= once + once:
+            if once <= letters <= once + once:
                 entry[NameObject("/Title")] = TextStringObject(heading)
                 del headings[: k + 1]
                 break

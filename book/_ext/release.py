@@ -32,8 +32,10 @@ MADE = {"notebooks.zip": "html/notebooks.zip", "walk.pdf": "pdf/walk.pdf",
 
 def git(root: Path, *words: str) -> str:
     """What git says, or nothing where it fails."""
-    told = subprocess.run(["git", "-C", root, *words], capture_output=True, text=True, check=False)
-    return told.stdout.strip() if told.returncode == 0 else ""
+    answer = subprocess.run(
+        ["git", "-C", root, *words], capture_output=True, text=True, check=False
+    )
+    return answer.stdout.strip() if answer.returncode == 0 else ""
 
 
 def disagreements(root: Path) -> list[str]:
@@ -49,8 +51,8 @@ def disagreements(root: Path) -> list[str]:
     if str(cited["version"]) != package:
         wrong.append(f"pyproject.toml has version {package}, CITATION.cff {cited['version']}")
     if newest is not None and str(cited.get("date-released")) != newest[2]:
-        said = cited.get("date-released")
-        wrong.append(f"CHANGELOG.md is of {newest[2]}, CITATION.cff of {said}")
+        released = cited.get("date-released")
+        wrong.append(f"CHANGELOG.md is of {newest[2]}, CITATION.cff of {released}")
     if f"v{package}" not in git(root, "tag", "--points-at", "HEAD").split():
         wrong.append(f"this commit has no tag v{package}: git tag -a v{package}")
     if git(root, "status", "--porcelain"):
@@ -63,10 +65,10 @@ def crate(cited: dict, made: list[Path]) -> dict:
     people = [
         {
             "@id": f"#author-{k}",
-            "@type": "Person" if "family-names" in one else "Organization",
-            "name": one.get("name") or f"{one['given-names']} {one['family-names']}",
+            "@type": "Person" if "family-names" in author else "Organization",
+            "name": author.get("name") or f"{author['given-names']} {author['family-names']}",
         }
-        for k, one in enumerate(cited["authors"], 1)
+        for k, author in enumerate(cited["authors"], 1)
     ]
     files = [
         {
@@ -87,9 +89,9 @@ def crate(cited: dict, made: list[Path]) -> dict:
         "description": " ".join(cited["abstract"].split()),
         "version": str(cited["version"]),
         "datePublished": str(cited["date-released"]),
-        "author": [{"@id": one["@id"]} for one in people],
-        "license": [{"@id": one["@id"]} for one in licences],
-        "hasPart": [{"@id": one["@id"]} for one in files],
+        "author": [{"@id": person["@id"]} for person in people],
+        "license": [{"@id": licence["@id"]} for licence in licences],
+        "hasPart": [{"@id": file["@id"]} for file in files],
     }
     itself = {
         "@id": CRATE,
@@ -132,8 +134,8 @@ def collect(root: Path, folder: Path) -> list[Path]:
         stem, dot, ending = name.rpartition(".")
         shutil.copyfile(built / path, new / f"{stem}-{version}{dot}{ending}")
     cited = yaml.safe_load((root / "CITATION.cff").read_text("utf-8"))
-    told = json.dumps(crate(cited, sorted(new.iterdir())), indent=1, ensure_ascii=False)
-    (new / CRATE).write_text(told + "\n", encoding="utf-8")
+    text = json.dumps(crate(cited, sorted(new.iterdir())), indent=1, ensure_ascii=False)
+    (new / CRATE).write_text(text + "\n", encoding="utf-8")
     made = sorted(new.iterdir())
     sums = [f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n" for path in made]
     (new / "SHA256SUMS").write_text("".join(sums), encoding="utf-8")
@@ -144,7 +146,7 @@ def collect(root: Path, folder: Path) -> list[Path]:
 
 if __name__ == "__main__":
     if found := disagreements(ROOT):
-        sys.exit("".join(f"==> {one}\n" for one in found) + "==> No release was made")
+        sys.exit("".join(f"==> {sentence}\n" for sentence in found) + "==> No release was made")
     if "--check" not in sys.argv[1:]:
         for path in collect(ROOT, ROOT / "dist"):
             print(f"==> {path.relative_to(ROOT)}, {path.stat().st_size / 1e6:.1f} MB")

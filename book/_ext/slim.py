@@ -116,7 +116,7 @@ class Page(Rewriter):
         self.has_results |= own.get("id") == "search-results"
         if name in self.opened:
             self.opened[name].append((self.start, self.end, own))
-        if name in ("i", "span") and any(each.startswith("fa-") for each in classes):
+        if name in ("i", "span") and any(kind.startswith("fa-") for kind in classes):
             end = f"</{name}>"
             drawn = self.icons.inline(own) if self.text.startswith(end, self.end) else ""
             if drawn:

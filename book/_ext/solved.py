@@ -64,8 +64,12 @@ def printed(call) -> str:
 
 def variants(lesson: str) -> list[dict[str, str]] | str:
     """The settings of all variants of a lesson; or why it has none."""
-    kept = entries(ROOT, "variants").get(lesson, "it has no variants")
-    return kept if isinstance(kept, str) else [{k: str(v) for k, v in one.items()} for one in kept]
+    kept = entries(ROOT, "variants").get(lesson, "variants.yml has no variants of this lesson")
+    return (
+        kept
+        if isinstance(kept, str)
+        else [{k: str(v) for k, v in settings.items()} for settings in kept]
+    )
 
 
 def settings_of(lesson: str, variant: int) -> dict[str, str]:
@@ -235,14 +239,14 @@ def solve(
     opened = [c.source for c in notebook.cells if is_open(c) and not is_starter(c)]
     statements = [node for source in opened for node in ast.parse(source).body]
     if not whole:
-        own = ast.parse("\n".join(code for one in found for code in one))
+        own = ast.parse("\n".join(code for exercise in found for code in exercise))
         statements = needed(statements, _Uses(own).reads)
     space, solved = {"__name__": "__main__"}, []
     with chdir(DATA), redirect_stdout(io.StringIO()):
         exec(compile(ast.Module(statements, []), str(path), "exec"), space)
-        for one in found:
-            exec(one.starter, space)
-            exec(one.solution, space)
+        for exercise in found:
+            exec(exercise.starter, space)
+            exec(exercise.solution, space)
             answer, asked = space["mine"], []
 
             def keep(mine, exercise, asked=asked, judge=engine.judge):
@@ -250,12 +254,12 @@ def solve(
                 judge(mine, exercise)
 
             with patch.object(engine, "judge", keep):
-                said = printed(lambda one=one: exec(one.check, space))
-            solved.append(Solved(one.solution.strip(), answer, asked[0], said))
+                said = printed(lambda exercise=exercise: exec(exercise.check, space))
+            solved.append(Solved(exercise.solution.strip(), answer, asked[0], said))
     plt.close("all")
     return solved
 
 
-def apart(one: list[Solved], other: list[Solved]) -> bool:
-    """Whether the answers to some exercise are right in one variant alone, each way."""
-    return any(not a.takes(b.answer) and not b.takes(a.answer) for a, b in zip(one, other))
+def apart(first: list[Solved], second: list[Solved]) -> bool:
+    """Whether the answers to some exercise are right in first variant alone, each way."""
+    return any(not a.takes(b.answer) and not b.takes(a.answer) for a, b in zip(first, second))

@@ -88,7 +88,7 @@ def failure(lesson: str, settings: dict[str, str]) -> str:
 def found(lesson: str, only: int, most: int = MANY) -> list[dict[str, str]]:
     """Variants of a lesson, from random draws of its choices, by one exercise or all."""
     names, values = zip(*CHOICES[lesson].items())
-    drawn = [dict(zip(names, one)) for one in itertools.product(*values)]
+    drawn = [dict(zip(names, choice)) for choice in itertools.product(*values)]
     random.Random(lesson).shuffle(drawn)
     kept, solutions = [], [solve(path(lesson), only=only)]
     for settings in drawn:
@@ -114,10 +114,10 @@ def mistakes(lesson: str, whole: bool = True) -> list[str]:
     for number, settings in enumerate(kept, 1):
         solutions.append(solve(path(lesson), settings))
         said = told(solutions[-1]) or ([failure(lesson, settings)] if whole else [])
-        wrong += [f"{lesson}, variant {number}: {one}" for one in said if one]
-    for one, other in itertools.combinations(range(len(solutions)), 2):
-        if not apart(solutions[one], solutions[other]):
-            wrong.append(f"{lesson}: variants {one} and {other} have the same answers")
+        wrong += [f"{lesson}, variant {number}: {mistake}" for mistake in said if mistake]
+    for first, second in itertools.combinations(range(len(solutions)), 2):
+        if not apart(solutions[first], solutions[second]):
+            wrong.append(f"{lesson}: variants {first} and {second} have the same answers")
     return wrong
 
 

@@ -81,5 +81,5 @@ def half_penalty(data: TrainingSet, states, joint: int = 0) -> float:
     length = data.inputs.gain[joint] * np.linalg.norm(x**2 / 2 - (x**2 / 2).mean())
     q, qdd = states[..., 0], states[:, joint, 2]
     known = np.column_stack([q, np.ones(len(q))])
-    left = qdd - known @ np.linalg.lstsq(known, qdd, rcond=None)[0]
-    return float(length**2 * left.var())
+    residual = qdd - known @ np.linalg.lstsq(known, qdd, rcond=None)[0]
+    return float(length**2 * residual.var())

@@ -35,8 +35,8 @@ def _explained(outputs, signals) -> np.ndarray:
     outputs, signals = (x - x.mean(0) for x in (outputs, signals))
     size = signals.std(0)
     signals = signals / np.where(size > 0, size, 1)
-    left = outputs - signals @ np.linalg.lstsq(signals, outputs, rcond=None)[0]
-    return np.clip(1 - (left**2).sum(0) / (outputs**2).sum(0), 0, 1)
+    residual = outputs - signals @ np.linalg.lstsq(signals, outputs, rcond=None)[0]
+    return np.clip(1 - (residual**2).sum(0) / (outputs**2).sum(0), 0, 1)
 
 
 class Responses(NamedTuple):

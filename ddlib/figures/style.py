@@ -310,8 +310,8 @@ def _legible(figure: Figure) -> bool:
         return False
     if any(not (whole.y0 <= box.y0 and box.y1 <= whole.y1) for box in boxes):
         return False
-    for one, other in itertools.combinations(boxes, 2):
-        common = Bbox.intersection(one, other)
+    for first, other in itertools.combinations(boxes, 2):
+        common = Bbox.intersection(first, other)
         if common is not None and common.width > point and common.height > 4 * point:
             return False
     for axis in figure.axes:
@@ -427,7 +427,7 @@ def _parsed(svg: str) -> ElementTree.Element:
     root = ElementTree.fromstring(svg)
     for element in root.iter():
         element.tag = element.tag.rpartition("}")[2]
-        for part in [each for each in element if each.tag.endswith(("}metadata", "}style"))]:
+        for part in [child for child in element if child.tag.endswith(("}metadata", "}style"))]:
             element.remove(part)
         if link := element.attrib.pop(f"{{{_XLINK}}}href", None):
             element.set("xlink:href", link)
@@ -452,7 +452,9 @@ def _put_in_reading_order(formula: ElementTree.Element) -> None:
     """
     letters = sorted(formula, key=lambda letter: round(float(letter.get("x")), 2))
     formula[:], formula.text = [], None
-    for (y, style), run in itertools.groupby(letters, lambda one: (one.get("y"), one.get("style"))):
+    for (y, style), run in itertools.groupby(
+        letters, lambda letter: (letter.get("y"), letter.get("style"))
+    ):
         run = list(run)
         x = " ".join(letter.get("x") for letter in run)
         joined = ElementTree.SubElement(formula, "tspan", x=x, y=y, style=style)

@@ -263,8 +263,10 @@ def decomposed(functions: Mapping[str, np.ndarray] | np.ndarray, step: float) ->
         for axis in axes[len(parts) :]:
             axis.remove()
 
-    energies = "; ".join(f"{title}: {_told(part)}" if title else _told(part)
-                     for title, part in parts.items())  # fmt: skip
+    energies = "; ".join(
+        f"{title}: {_shares_in_words(part)}" if title else _shares_in_words(part)
+        for title, part in parts.items()
+    )
     alt = f"Weights over the window, as squares and as a curve with its parts. {energies}."
     return illustrate(draw, alt, 7.0, 2.6 if rows == columns == 1 else 0.4 + 2.3 * rows)
 
@@ -296,9 +298,10 @@ def _row_and_parts(axis: Axes, parts, step: float, room: float) -> None:
     axis.scatter(x, np.full(f.size, 0.92), area, colours, **look)
 
 
-def _told(parts) -> str:
+def _shares_in_words(parts) -> str:
     """The parts of a weight function in words, by their shares of its energy."""
-    each = {"constant": np.broadcast_to(parts.constant, parts.even.shape), "even": parts.even}
-    energy = {name: float((y**2).sum()) for name, y in {**each, "odd": parts.odd}.items()}
+    constant = np.broadcast_to(parts.constant, parts.even.shape)
+    curves = {"constant": constant, "even": parts.even, "odd": parts.odd}
+    energy = {name: float((y**2).sum()) for name, y in curves.items()}
     whole = sum(energy.values()) or 1.0
     return ", ".join(f"{name} {100 * e / whole:.0f} %" for name, e in energy.items())

@@ -39,9 +39,9 @@ def in_threads(work: Callable, items: Sequence, most: int, stop: Event) -> tuple
     with one_core_each(), pool:
         try:
             futures += (pool.submit(work, item) for item in items)
-            left = set(futures)
-            while left:  # Windows hears Ctrl-C only between two short waits
-                done, left = wait(left, 0.2, FIRST_EXCEPTION)
+            pending = set(futures)
+            while pending:  # Windows hears Ctrl-C only between two short waits
+                done, pending = wait(pending, 0.2, FIRST_EXCEPTION)
                 for future in done:
                     future.result()
         except KeyboardInterrupt:

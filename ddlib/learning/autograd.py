@@ -117,8 +117,10 @@ def module_gradient(module: nn.Module, windows) -> np.ndarray:
                     f"model must return torques of shape (..., {len(x)}, output), got {got}"
                 )
             sums = torque.sum(-2)
-            each = [torch.autograd.grad(y, x, retain_graph=True)[0].sum(0) for y in sums.flatten()]
-            total = total + torch.stack(each).double().reshape(*sums.shape, *x.shape[1:])
+            gradients = [
+                torch.autograd.grad(y, x, retain_graph=True)[0].sum(0) for y in sums.flatten()
+            ]
+            total = total + torch.stack(gradients).double().reshape(*sums.shape, *x.shape[1:])
     finally:
         for part, mode in modes.items():
             part.training = mode

@@ -109,8 +109,7 @@ def solve(
     instance("data", data, TrainingSet)
     flag("progress", progress)
     cases_of("test", test)
-    if not isinstance(whiten, bool):
-        raise TypeError(f"whiten must be True or False, got {whiten!r}")
+    flag("whiten", whiten)
     _check(weights, data, test)
     integer("steps", steps, 1)
     number("tolerance", tolerance, 0.0, 1.0)

@@ -178,8 +178,8 @@ class Weights:
     @property
     def largest(self) -> np.ndarray:
         """Magnitude of the largest weight or bias of each network, shape (...)."""
-        each = (np.abs(matrix).max((-2, -1)) for matrix in (self.rows, self.output_weights))
-        return np.maximum(*each)
+        layers = (np.abs(matrix).max((-2, -1)) for matrix in (self.rows, self.output_weights))
+        return np.maximum(*layers)
 
     def count(self, biases: bool = False) -> int:
         """Number of weights of one network, with or without `biases`."""

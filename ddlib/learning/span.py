@@ -170,5 +170,5 @@ class Lazy:
         gradient = (self._slopes.T @ error.ravel()) @ self._axes
         steps = effective_steps(eps * self.curvatures, epochs, momentum, warm_up)
         change = -eps * (steps * gradient) @ self._axes.T
-        left = error.ravel() + change @ self._slopes.T
-        return TangentCourse(with_change(self._start, change), left.reshape(-1, *error.shape))
+        after = error.ravel() + change @ self._slopes.T
+        return TangentCourse(with_change(self._start, change), after.reshape(-1, *error.shape))

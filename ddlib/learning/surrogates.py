@@ -37,8 +37,6 @@ def surrogate(kind: str, torque, seed: int = 0) -> np.ndarray:
 
 def surrogates(kind: str, torque, draws: int, seed: int = 0) -> np.ndarray:
     """Several draws, shape ``(draws, runs, time, joint)``; draw k depends on ``seed + k`` only."""
-    one_of("kind", kind, _KINDS)
-    seed_number("seed", seed)
     integer("draws", draws, 1, 10**6)
     return np.stack([surrogate(kind, torque, seed + k) for k in range(integer("draws", draws, 1))])
 
@@ -74,8 +72,8 @@ def related(target, windows) -> np.ndarray:
     x, y = x - x.mean(0), target - target.mean(0)
     square = x.T @ x
     square[np.diag_indices_from(square)] += 1e-6 * np.trace(square) / len(square)
-    left = y - x @ np.linalg.solve(square, x.T @ y)
-    return 1 - (left**2).sum(0) / (y**2).sum(0)
+    residual = y - x @ np.linalg.solve(square, x.T @ y)
+    return 1 - (residual**2).sum(0) / (y**2).sum(0)
 
 
 def _shifted(torque, rng):

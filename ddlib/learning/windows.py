@@ -82,8 +82,6 @@ class Scaler:
         filled("data", data)
         data = np.moveaxis(finite_array("data", data), joint_axis, -1)
         data = data.reshape(-1, data.shape[-1])
-        if not len(data):
-            raise ValueError("data must hold at least one value per joint, got none")
         varies("data", data, "without a range it has no scale")
         return cls(data.min(0), data.max(0), tuple(target))
 

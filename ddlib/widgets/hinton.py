@@ -15,9 +15,6 @@ from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.parts.parameters import Choice
 from ddlib.widgets.scripts import bundle, styles
 
-EXACT = 1e-4  # tolerance of widgets that bake every choice: what int16 can hold, and little else
-
-
 CENTRE = "time from the centre, ms"
 
 

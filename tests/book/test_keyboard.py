@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import chromium
 import pytest
 
 pytestmark = [pytest.mark.browser, pytest.mark.chromium]
@@ -81,7 +80,12 @@ def lesson(site, visit):
 
 
 def test_feedback(lesson):
+    """And buttons that copy have names of their own."""
     keys = lesson("feedback")
+    names = keys.page.locator("article button.copybtn").evaluate_all(
+        "(buttons) => buttons.map((button) => button.getAttribute('aria-label'))"
+    )
+    assert len(names) == len(set(names)) > 5 and all(name.startswith("Copy code") for name in names)
     keys.go("It swings for a shorter time")
     keys.press("Space")
     keys.go("Try it")
@@ -116,12 +120,3 @@ def test_whose_filters(lesson):
     keys.go("Start, up to")
     assert keys.moves("Home") == "±0.01"
     keys.question_and_solution()
-
-
-def test_buttons_that_copy_have_names_of_their_own(lesson):
-    page = lesson("feedback").page
-    chromium.settle(page)
-    names = page.locator("article button.copybtn").evaluate_all(
-        "(all) => all.map((one) => one.getAttribute('aria-label'))"
-    )
-    assert len(names) == len(set(names)) > 5 and all(name.startswith("Copy code") for name in names)

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import gzip
+from functools import cache
+from pathlib import Path
+from urllib.parse import unquote
 
 import chromium
 import pytest
 from axe import violations_in
-from book_pages import PAGES, ROOT, WITH_WIDGETS
+from book_pages import LESSONS, PAGES, ROOT, WITH_WIDGETS
 
 pytestmark = pytest.mark.browser
 
@@ -20,6 +23,18 @@ OTHERS = ("evidence/feedback", "rivals", "use-it-on-your-arm", "ledger", "lesson
           "notation", "glossary", "status", "bibliography", "api/learning")  # fmt: skip
 EVERY_KIND = [*WITH_WIDGETS, *(f"book/{name}" for name in OTHERS)]
 """Pages of each kind: all with widgets, and one of each that has none."""
+
+# Where the first figure or widget begins, and *You will*; in px from the page's top.
+FIRST = """
+() => {
+  const seen = (el) => el.checkVisibility() && el.getBoundingClientRect().height > 100;
+  const all = [...document.querySelectorAll("article :is(.ddlib-figure, .ddlib-widget)")];
+  const top = (el) => (el ? el.getBoundingClientRect().top + scrollY : null);
+  const below = document.evaluate("//article//strong[text()='You will']", document, null, 9, null);
+  return [top(all.find(seen)), top(below.singleNodeValue)];
+}
+"""
+LOWEST = {1280: 700, 390: 744}  # px, on a laptop and on a phone
 
 CHECKS = (ROOT / "tests" / "support" / "page_checks.js").read_text(encoding="utf-8")
 
@@ -37,37 +52,50 @@ def seen(opened, scheme: str, width: int) -> list[str]:
     return [f"{scheme}, {width} px: {fault}" for fault in found + alerts]
 
 
-def too_heavy(opened) -> list[str]:
-    """More than 500 kB for a page beside MathJax, compressed as hosts send it."""
-    if chromium.FIREFOX:  # it does not hand out what it got
+@cache
+def compressed(path: Path) -> int:
+    """Bytes of a file as hosts send it."""
+    return len(gzip.compress(path.read_bytes(), 6))
+
+
+def too_heavy(opened, site: str, built: Path) -> list[str]:
+    """More than 500 kB for a page beside MathJax."""
+    if chromium.FIREFOX:  # it does not say what it got
         return []
-    own = [r for r in opened.responses if r.url.startswith("http") and "/mathjax/" not in r.url]
-    sizes = {r.url: len(gzip.compress(r.body(), 6)) for r in own}
+    urls = {response.url.partition("?")[0] for response in opened.responses}
+    own = {url for url in urls if url.startswith(site) and "/mathjax/" not in url}
+    sizes = {url: compressed(built / unquote(url.removeprefix(f"{site}/"))) for url in own}
     assert sum(sizes.values()) > 20_000
-    heaviest = sorted(sizes.items(), key=lambda s: -s[1])[:5]
+    heaviest = sorted(sizes.items(), key=lambda entry: -entry[1])[:5]
     return [f"{sum(sizes.values())} bytes: {heaviest}"] * (sum(sizes.values()) > 500_000)
 
 
+def result_comes_late(opened, width: int) -> list[str]:
+    """That a lesson's first figure or widget does not begin above what the reader will do."""
+    first, promise = opened.page.evaluate(FIRST)
+    fine = None not in (first, promise) and first < min(LOWEST[width], promise)
+    return [] if fine else [f"{width} px: the result begins at {first}, the promise at {promise}"]
+
+
 @pytest.mark.parametrize("name", [*PAGES, *GENERATED])
-def test_page_is_clean(name, site, visit):
+def test_page_is_clean(name, site, built, visit):
     """Opened in the dark, then in light, wide, narrow, and unfolded: one load for all."""
     opened = visit(f"{site}/{name}.html", "dark")
-    problems = too_heavy(opened)
+    problems = too_heavy(opened, site, built)
     for scheme, width in (("dark", WIDE), ("light", NARROW), ("light", WIDE)):
         problems += seen(opened, scheme, width)
+        problems += result_comes_late(opened, width) if name in LESSONS else []
     problems += opened.problems  # before axe asks for style sheets itself
-    where = (
-        "html" if name in {*EVERY_KIND, *GENERATED} else "main"
-    )  # what is around it is the same on each page
+    # What is around an article is the same on each page
+    where = "html" if name in {*EVERY_KIND, *GENERATED} else "main"
     assert not problems + violations_in(opened.page, "light", "dark", where=where)
 
 
 @pytest.mark.parametrize("name", EVERY_KIND)
 def test_page_is_clean_as_a_file(name, built, visit):
-    """Opened from a folder, narrow from the start, then wide."""
+    """Opened from a folder, and narrow from the start."""
     opened = visit((built / f"{name}.html").as_uri(), "light", NARROW)
-    problems = seen(opened, "light", NARROW) + seen(opened, "light", WIDE)
-    assert not problems + opened.problems
+    assert not seen(opened, "light", NARROW) + opened.problems
 
 
 def test_cards_on_a_phone_are_headed_like_their_table(site, visit):

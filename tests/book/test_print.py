@@ -48,13 +48,13 @@ def test_paper_is_white_and_has_the_answers(site, visit):
         f"() => addEventListener('beforeprint', () => {{ window.printed = {look}; }})"
     )
     before = opened.page.evaluate(look)
-    opened.page.pdf()
+    assert opened.page.pdf().startswith(b"%PDF")
     assert opened.page.evaluate("window.printed") == ["rgb(255, 255, 255)", 0]
     assert opened.page.evaluate(look) == before
     assert before[0] != "rgb(255, 255, 255)" and before[1] > 0
 
 
-@pytest.mark.parametrize("name", [CHAPTERS[k] for k in (0, 1, 5, -3)])
+@pytest.mark.parametrize("name", [CHAPTERS[0], CHAPTERS[5]])
 def test_a_chapter_on_paper(name, site, visit):
     opened = visit(f"{site}/{name}.html", width=PAPER)
     opened.page.emulate_media(media="print")
@@ -68,4 +68,3 @@ def test_a_chapter_on_paper(name, site, visit):
     assert not printed["closed"] and not printed["moving"] and not printed["cut"]
     assert printed["answers"] and all(printed["answers"])
     assert printed["figures"] and all(printed["figures"])
-    assert opened.page.pdf().startswith(b"%PDF")

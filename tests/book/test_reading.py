@@ -1,10 +1,10 @@
-"""What a reader meets: the result on the first screen, code that teaches, plumbing by a switch."""
+"""What a reader meets of code: pieces that teach, and plumbing by a switch."""
 
 from __future__ import annotations
 
 import chromium
 import pytest
-from book_pages import LESSONS, code_cells, source
+from book_pages import code_cells, source
 
 browser_test = pytest.mark.browser
 
@@ -16,29 +16,6 @@ SEEN = """
 () => [...document.querySelectorAll("article .cell_input pre")].filter((el) => el.checkVisibility())
   .map((el) => [el.textContent, Boolean(el.closest(".tag_to-read"))])
 """
-# Where the first figure or widget begins, and whether it has a size; in px from the page's top.
-FIRST = """
-() => {
-  const seen = (el) => el.checkVisibility() && el.getBoundingClientRect().height > 100;
-  const all = [...document.querySelectorAll("article :is(.ddlib-figure, .ddlib-widget)")];
-  const first = all.find(seen);
-  const below = document.evaluate("//article//strong[text()='You will']", document, null, 9, null);
-  const top = (el) => el.getBoundingClientRect().top + scrollY;
-  return [first && top(first), top(below.singleNodeValue)];
-}
-"""
-
-
-@browser_test
-@pytest.mark.parametrize("name", LESSONS)
-def test_the_result_begins_on_the_first_screen(name, site, visit):
-    """On a laptop and on a phone, above what the reader will do."""
-    page = visit(f"{site}/{name}.html").page
-    for width, height, lowest in ((1280, 800, 700), (390, 844, 744)):
-        page.set_viewport_size({"width": width, "height": height})
-        chromium.settle(page)
-        first, promise = page.evaluate(FIRST)
-        assert first is not None and first < min(lowest, promise), width
 
 
 @browser_test

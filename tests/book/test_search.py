@@ -58,7 +58,7 @@ def test_chapters_come_before_the_reference_with_prose(kind, built, site, visit)
     """From a folder, too, where a page cannot read others."""
     root = built.as_uri() if kind == "file" else site
     raw = re.compile(r"\\[a-zA-Z(\[]|\$|#%|\.ipynb|^\W*import ")
-    for word in WORDS:
+    for word in WORDS if kind == "file" else WORDS[-1:]:
         opened = visit(f"{root}/search.html?q={word}")
         found = hits(opened)
         kinds = ["chapter" if hit["page"] in CHAPTERS else hit["page"] in API for hit in found]

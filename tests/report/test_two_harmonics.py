@@ -1,52 +1,31 @@
 """Two harmonics: the paper's family as a limit, true derivatives, position and acceleration."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 
 from ddlib.analysis import explained
 from ddlib.setups import POSITION_FEEDBACK, STATE_FEEDBACK, true_states
+from ddlib.simulation import LOG_STEP, REST
 from ddlib.trajectories import APPENDIX_I, pick_and_place, time_grid
 from workshop.report.two_harmonics import (
     NEUTRAL,
-    ORDER,
-    _two_harmonics,
     record_circle,
     record_quintic,
     record_two_harmonics,
 )
 
-T = time_grid(0.01, 0.2)
 
-
-def test_without_a_second_sine_it_is_the_papers_family():
-    own = _two_harmonics(APPENDIX_I, 0 * APPENDIX_I, T)
-    for found, wanted in zip(own, pick_and_place(APPENDIX_I, T)):
-        np.testing.assert_allclose(found, wanted, atol=1e-15)
-
-
-@pytest.mark.parametrize("order", [2, 3, 5])
-def test_velocity_and_acceleration_are_the_derivatives(order):
-    t = np.linspace(0.5, 2.5, 20_001)
-    reference = _two_harmonics([40.0, 10.0], [-3.0, 2.0], t, order)
-    for lower, upper in pairwise(reference):
-        slope = np.gradient(lower, t, axis=0)[1:-1]
-        np.testing.assert_allclose(slope, upper[1:-1], atol=2e-6)
-    middle = _two_harmonics([40.0, 10.0], [-3.0, 2.0], [1.5], order).q[0]
-    sign = np.sin(order * np.pi / 2)  # the second sine half-way: its top, bottom or a zero
-    np.testing.assert_allclose(np.rad2deg(middle), [-40 + 3 * sign, -10 - 2 * sign], atol=1e-12)
-
-
-def test_it_rests_before_and_after():
-    reference = _two_harmonics([45.0, 45.0], [3.0, -3.0], T)
-    still = (T < 0) | (T >= 3)
-    assert still.sum() == 40
-    for x in reference:
-        assert (x[still] == 0).all()
-    # it does not start from rest: both sines are steepest there
-    speed = -np.pi / 3 * np.deg2rad([45 + 3 * ORDER, 45 - 3 * ORDER])
-    np.testing.assert_allclose(reference.qd[T == 0], [speed], atol=1e-12)
+@pytest.mark.parametrize("order", [2, 5])
+def test_the_reference_is_the_papers_family_and_a_second_sine(order):
+    recording = record_two_harmonics(order=order)
+    t = time_grid(LOG_STEP, REST)
+    second = [x - y for x, y in zip(recording.reference, pick_and_place(APPENDIX_I, t))]
+    moving, omega = (t >= 0) & (t < 3), order * np.pi / 3
+    sine, cosine = (f(omega * t)[:, None] * moving[:, None] for f in (np.sin, np.cos))
+    size = second[0][:, [sine.argmax()]] / sine.max()
+    assert (np.abs(size) > 0).all() and np.abs(size).max() < np.deg2rad(2 * 45 / order**2)
+    for x, wanted in zip(second, (sine, omega * cosine, -(omega**2) * sine), strict=True):
+        np.testing.assert_allclose(x, size * wanted, atol=1e-12)  # and rests before and after
 
 
 @pytest.fixture(scope="module")

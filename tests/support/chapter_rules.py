@@ -17,12 +17,10 @@ from needed import needed
 MAX_VISIBLE_LINES, MAX_VISIBLE_COLUMNS = 25, 84  # one idea, and what a page has room for
 MAX_OPENING, MAX_PROMISE = 60, 30  # words before the first picture, words of *You will*
 HIDDEN = {"hide-input", "hide-cell", "remove-input", "remove-cell"}
-FOLDED = {"source_hidden": True, "outputs_hidden": True}  # in JupyterLab
 TUTORIAL = "book/use-it-on-your-arm"
 FROM_SCRATCH = {TUTORIAL, *WALK}  # open cells run alone, so they import and print
-CLOSING = ["Paper and reproduction", "On your own", "Further reading"]
+OWN, READING = "On your own", "Further reading"
 FOUND = "What you found"  # ends a lesson; the paper's sentences stand on its evidence page
-MIN_EXERCISES = 3
 CHANGE_THIS = "change-this"  # tag of the one cell whose settings all open cells follow
 MOST_WORDS, MOST_NUMBERS, MOST_IN_PARAGRAPH = 2500, 40, 3
 MOST_HIDDEN, LEAST_OPEN = 12, 0.6  # hidden lines of a lesson, share of its lines that stand open
@@ -92,7 +90,7 @@ def folds_open_onto_something(notebook) -> list:
     """One fold for the imports of a recipe is allowed where no chapter's grid is asked for."""
     folds = [c for c in code_of(notebook) if tags(c) & {"hide-input", "hide-cell", "hide-output"}]
     silent = [cell for cell in folds if not shows_something(cell.source)]
-    chapter = headings(prose(notebook), 2)[-1:] == CLOSING[-1:]
+    chapter = headings(prose(notebook), 2)[-1:] == [READING]
     recipes = [c for c in silent if not chapter and set(only_imports(c.source)) == {True}]
     return [cell.id for cell in silent if cell not in recipes[:1]]
 
@@ -128,28 +126,18 @@ def title_then_thesis(notebook) -> list:
     return [] if titled and plain else [title, thesis]
 
 
-def opening(notebook) -> list:
-    text = prose(notebook).split("\n## ")[0]
-    found = re.findall(r"\*\*(You will|You need|Time to run)\b", text)
-    measured = re.search(r"\*\*Time to run\*\* \{runtime\}`", text)
-    return [] if measured and found == ["You will", "You need", "Time to run"] else [found]
-
-
 def closing(notebook) -> list:
-    """*On your own*; then, of a lesson, what was found, with or without further reading."""
+    """After *On your own*, if it has that: what was found, with or without further reading."""
     found = headings(prose(notebook), 2)
-    if not any(CHANGE_THIS in tags(cell) for cell in notebook.cells):
-        return [] if found[-len(CLOSING) :] == CLOSING else found
-    own = found.index(CLOSING[1]) if CLOSING[1] in found else len(found)
-    after = found[own + 1 :]
-    return [] if after and set(after) <= {FOUND, CLOSING[2]} else found
+    after = found[found.index(OWN) + 1 :] if OWN in found else found[-1:]
+    return [] if after and set(after) <= {FOUND, READING} else found
 
 
 def exercises(notebook) -> list:
     """The cells after the heading *On your own*, up to the next one and with it."""
     section, found = "", []
     for cell in notebook.cells:
-        if section == "On your own":
+        if section == OWN:
             found.append(cell)
         if cell.cell_type == "markdown":
             section = ([section, *headings(cell.source, 2)])[-1]
@@ -162,20 +150,7 @@ def open_answer(text: str) -> str:
     return re.sub(r"^<details .*?^</details>$", "", before, flags=re.M | re.S).strip()
 
 
-def answers_are_folded(notebook) -> list:
-    """On the page by a tag, in JupyterLab by its own metadata; words by an element for both."""
-    if any(CHANGE_THIS in tags(cell) for cell in notebook.cells):
-        return exercises_wait_for_an_answer(notebook)
-    cells = exercises(notebook)
-    code = [cell for cell in cells if cell.cell_type == "code"]
-    wrong = [
-        c.id for c in code if "hide-cell" not in tags(c) or c.metadata.get("jupyter") != FOLDED
-    ]
-    wrong += ["too few"] * (len(code) < MIN_EXERCISES)
-    return wrong + [c.id for c in cells if c.cell_type == "markdown" and open_answer(c.source)]
-
-
-CHAPTER = (title_then_thesis, opening, closing, answers_are_folded)
+CHAPTER = (title_then_thesis, closing)
 
 
 # --- every lesson, and the tutorial -------------------------------------------------------
@@ -301,7 +276,7 @@ def figures_are_made_in_the_open(notebook) -> list:
 
 
 def exercises_wait_for_an_answer(notebook) -> list:
-    """A question, an empty starter, a check, a folded solution."""
+    """A question, an empty starter, a check, a folded solution; a lesson may have no exercises."""
     cells = exercises(notebook)
     kinds = [
         "starter" if is_starter(cell) else "check" if is_check(cell) else cell.id
@@ -309,7 +284,7 @@ def exercises_wait_for_an_answer(notebook) -> list:
         if cell.cell_type == "code"
     ]
     asked = len(re.findall(r"^\*\*\d+\. ", prose(notebook).partition("## On your own")[2], re.M))
-    wrong = [] if kinds == ["starter", "check"] * asked and asked >= MIN_EXERCISES else [kinds]
+    wrong = [] if kinds == ["starter", "check"] * asked else [kinds]
     return wrong + [c.id for c in cells if c.cell_type == "markdown" and open_answer(c.source)]
 
 

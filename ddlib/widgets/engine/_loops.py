@@ -99,9 +99,11 @@ def linear(arm: Arm, viscous, law: dict, late: int, period=CONTROL_STEP) -> _Lin
     growth = float(np.log(np.abs(poles).max()) / period)
     if growth >= 0:
         return _Linear(growth, np.full(2, np.nan), np.full(2, np.nan))
-    each = [margins(opened_loop(joints, **law, period=period, delay=late, joint=j)) for j in (0, 1)]
+    by_joint = [
+        margins(opened_loop(joints, **law, period=period, delay=late, joint=j)) for j in (0, 1)
+    ]
     return _Linear(
-        growth, np.array([m.phase_deg for m in each]), np.array([m.crossover for m in each])
+        growth, np.array([m.phase_deg for m in by_joint]), np.array([m.crossover for m in by_joint])
     )
 
 

@@ -23,7 +23,7 @@ def plant(arm: Arm, effects: Effects) -> dict:
     At most one viscous and one Coulomb friction, one saturation and one quantisation; the torque
     sensor is ignored, since the page shows the applied torque.
     """
-    one = {}
+    by_kind = {}
     parts = {
         "friction": (ViscousFriction, CoulombFriction),
         "actuator": (Saturation,),
@@ -33,12 +33,12 @@ def plant(arm: Arm, effects: Effects) -> dict:
     }
     for part, kinds in parts.items():
         for effect in getattr(effects, part):
-            if type(effect) not in kinds or type(effect) in one:
+            if type(effect) not in kinds or type(effect) in by_kind:
                 names = ", ".join(kind.__name__ for kind in kinds) or "no effect"
                 raise TypeError(f"{part} must hold at most one each of {names}, got {effect!r}")
-            one[type(effect)] = effect
-    viscous = one.get(ViscousFriction, ViscousFriction((0.0, 0.0)))
-    coulomb = one.get(CoulombFriction, CoulombFriction((0.0, 0.0)))
+            by_kind[type(effect)] = effect
+    viscous = by_kind.get(ViscousFriction, ViscousFriction((0.0, 0.0)))
+    coulomb = by_kind.get(CoulombFriction, CoulombFriction((0.0, 0.0)))
     g1, g2 = arm.gravity_moments
     return {
         "arm": {"a": arm.a, "b": arm.b, "d": arm.d, "g1": g1, "g2": g2},
@@ -46,8 +46,8 @@ def plant(arm: Arm, effects: Effects) -> dict:
         "viscous": _pair(viscous.coefficient),
         "coulomb": _pair(coulomb.level),
         "smoothing": coulomb.smoothing,
-        "encoder": one[Quantisation].step if Quantisation in one else 0,
-        "limit": _pair(one[Saturation].limit) if Saturation in one else None,
+        "encoder": by_kind[Quantisation].step if Quantisation in by_kind else 0,
+        "limit": _pair(by_kind[Saturation].limit) if Saturation in by_kind else None,
     }
 
 
