@@ -137,7 +137,9 @@ def butterworth_states(q, step: float, cutoff: float, order: int = 4) -> np.ndar
     ndarray, shape (..., time, joint, 3)
         In rad, rad/s and rad/s^2. Differences are of fourth order.
     """
-    return _later(_filtered(shaped("q", q, "(..., time, joint)"), step, cutoff, order))
+    q = shaped("q", q, "(..., time, joint)")
+    filled("q", q)
+    return _later(_filtered(q, step, cutoff, order))
 
 
 def kalman_states(q, step: float, noise: float | None = None) -> np.ndarray:
