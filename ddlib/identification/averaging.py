@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import BSpline
 
-from ddlib._check import number
+from ddlib._check import number, shaped
 from ddlib.identification.regression import SIGN_SPEED, SLOW
 from ddlib.simulation import Recording
 
@@ -124,7 +124,7 @@ def reading_noise(q) -> np.ndarray:
 
 def encoder_step(q) -> float | None:
     """The step of which all differences of readings ``(..., time)`` are multiples; or None."""
-    gaps = np.abs(np.diff(q, axis=-1)).ravel()
+    gaps = np.abs(np.diff(shaped("q", q, "(..., time)"), axis=-1)).ravel()
     size = np.abs(q).max(initial=0.0)
     gaps = gaps[gaps > 1e-9 * size + 1e-15]
     if gaps.size < 10:

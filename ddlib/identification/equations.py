@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.signal import savgol_filter
 
-from ddlib._check import finite_array, integer, number
+from ddlib._check import finite_array, flag, instance, integer, number
 from ddlib.control import Controller
 from ddlib.dynamics import Arm
 from ddlib.effects import Effects, EncoderZero, Quantisation
@@ -29,6 +29,7 @@ from ddlib.identification.regression import (
     RIGID,
     Equations,
     from_states,
+    known_names,
     regressor_columns,
 )
 from ddlib.logs.checking import warn_of_log
@@ -47,6 +48,8 @@ def by_smoothing(
     smooth_torque: bool = False,
 ) -> Equations:
     """Equations with the derivatives of parabolas in windows (Savitzky & Golay 1964)."""
+    instance("recording", recording, Recording)
+    flag("smooth_torque", smooth_torque)
     if integer("width", width, 3) % 2 == 0:
         raise ValueError(f"width must be an odd number of samples, got {width}")
     if smooth_torque:
@@ -81,6 +84,8 @@ def by_modulation(
         Time for which a logged torque acts, s, from its sample on: the shorter of the log's step
         and the controller's period. Default: as the recording says, its computing time included.
     """
+    instance("recording", recording, Recording)
+    known_names(names)
     warn_of_log(recording)
     begin, end = recording.span
     shortest, tiny = 12 * recording.step, 1e-6 * recording.step

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.ndimage import convolve1d
 
-from ddlib._check import integer
+from ddlib._check import instance, integer
 from ddlib.identification.regression import Equations, Estimate
 
 
@@ -48,6 +48,8 @@ def instrumental_variables(
         have equations at the same samples, by the joints. There are no intervals from equations of
         single samples: instruments take away the bias of noise, not that of smoothing.
     """
+    instance("equations", equations, Equations)
+    instance("instruments", instruments, Equations)
     integer("rounds", rounds, 1)
     names, regressors, torques = equations[:3]
     others = instruments.regressor

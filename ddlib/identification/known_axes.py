@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import integer, shaped
+from ddlib._check import flag, integer, shaped
 from ddlib.identification.regression import SIGN_SPEED
 
 _JOINTS = 6
@@ -42,6 +42,7 @@ def joint_terms(states) -> tuple[dict[str, np.ndarray], ...]:
 
 def joint_columns(states, joint: int, friction: bool = True) -> np.ndarray:
     """The `joint_terms` of one joint (0 to 5) as a matrix, ``(cases, factors)``."""
+    flag("friction", friction)
     row = joint_terms(states)[integer("joint", joint, 0, _JOINTS - 1)]
     columns = [x for name, x in row.items() if friction or name not in _FRICTION]
     return np.stack(columns, -1)

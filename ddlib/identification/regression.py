@@ -10,7 +10,7 @@ import numpy as np
 from scipy.linalg import eigh, null_space
 from scipy.stats import t as student
 
-from ddlib._check import finite_array, instance, integer, number, one_of
+from ddlib._check import finite_array, instance, integer, number, one_of, series, triple
 from ddlib.dynamics import Arm
 from ddlib.effects import CoulombFriction, Effects, ViscousFriction
 from ddlib.trajectories import Trajectory
@@ -396,6 +396,7 @@ def from_states(q, qd, qdd, torque, names: Sequence[str] = RIGID) -> Equations:
     Angles (rad), velocities, accelerations and torques (N m) are ``(..., samples, 2)``; `names` are
     parameters from `RIGID`, `GRAVITY` and `FRICTION`.
     """
+    known_names(names)
     q, qd, qdd, torque = np.broadcast_arrays(
         *(finite_array(n, x, 2) for n, x in zip(("q", "qd", "qdd", "torque"), (q, qd, qdd, torque)))
     )
@@ -411,6 +412,8 @@ def from_states(q, qd, qdd, torque, names: Sequence[str] = RIGID) -> Equations:
 
 def true_parameters(arm: Arm, effects: Effects, names: Sequence[str]) -> np.ndarray:
     """What an identification should find; of the effects viscous and Coulomb friction are known."""
+    instance("arm", arm, Arm)
+    instance("effects", effects, Effects)
     known_names(names)
     viscous = sum(
         np.asarray(f.coefficient) for f in effects.friction if isinstance(f, ViscousFriction)
@@ -427,6 +430,7 @@ def excitation(trajectory: Trajectory, names: Sequence[str] = RIGID, noise: floa
     With `noise`, the standard deviation of accelerations (rad/s^2), a direction of parameters is
     unseen if it has less than three times the energy that this noise alone gives it.
     """
+    triple("trajectory", trajectory)
     number("noise", noise, 0.0)
     equations = from_states(*trajectory, np.zeros(2), names)
     rows = np.concatenate([a.reshape(-1, len(names)) for a in equations.regressor])
@@ -453,13 +457,14 @@ def _spread(residual, basis) -> np.ndarray:
     return np.sqrt(np.sum(residual**2, -1) / np.maximum(free, 1e-9))
 
 
-def known_names(names) -> None:
-    """A ValueError for a name of no parameter."""
+def known_names(names, called: str = "names") -> None:
+    """Refuse what are no names of parameters."""
+    if not series(called, names, str):
+        raise ValueError(f"{called} must be one or more, got none")
     for name in names:
-        one_of("names", name, (*RIGID, *GRAVITY, *FRICTION))
+        one_of(called, name, (*RIGID, *GRAVITY, *FRICTION))
 
 
 def regressor_columns(row: dict, names: Sequence[str], like) -> np.ndarray:
     """The regressor (..., parameters) of one joint from columns by name, zeros `like` if unfelt."""
-    known_names(names)
     return np.stack([row.get(name, np.zeros_like(like)) for name in names], -1)

@@ -11,7 +11,7 @@ from scipy.linalg import cho_solve_banded, cholesky_banded
 from scipy.optimize import minimize_scalar
 from scipy.signal import butter, savgol_filter, sosfiltfilt
 
-from ddlib._check import integer, number, shaped
+from ddlib._check import filled, instance, integer, number, shaped
 from ddlib.identification.averaging import (
     BY_SAMPLE,
     acting_time,
@@ -25,7 +25,7 @@ from ddlib.identification.averaging import (
     where_sign_is_sure,
     with_runs,
 )
-from ddlib.identification.regression import FRICTION, RIGID, Equations, from_states
+from ddlib.identification.regression import FRICTION, RIGID, Equations, from_states, known_names
 from ddlib.logs.checking import warn_of_log
 from ddlib.simulation import Recording
 
@@ -73,6 +73,8 @@ def by_butterworth(
     Equations
         Of the motion; without samples within ``1 / cutoff`` of the recording's ends.
     """
+    instance("recording", recording, Recording)
+    known_names(names)
     step = recording.step
     again = partial(_filtered, step=step, cutoff=cutoff, order=order)
     number("cutoff", cutoff, 0.0, 0.499 / step, open_low=True)
@@ -107,6 +109,8 @@ def by_kalman(
         Of the motion; without samples so near to the recording's ends that the smoother sees one
         side only.
     """
+    instance("recording", recording, Recording)
+    known_names(names)
     shares = _shares(recording.q, noise, recording.motion)
     again = partial(_smoothed, step=recording.step, shares=shares)
     margin = int(np.ceil(2 * max(shares) ** (-0.5 / _ORDER)))  # a joint at rest has no ends
@@ -133,7 +137,9 @@ def butterworth_states(q, step: float, cutoff: float, order: int = 4) -> np.ndar
     ndarray, shape (..., time, joint, 3)
         In rad, rad/s and rad/s^2. Differences are of fourth order.
     """
-    return _later(_filtered(shaped("q", q, "(..., time, joint)"), step, cutoff, order))
+    q = shaped("q", q, "(..., time, joint)")
+    filled("q", q)
+    return _later(_filtered(q, step, cutoff, order))
 
 
 def kalman_states(q, step: float, noise: float | None = None) -> np.ndarray:
@@ -159,6 +165,7 @@ def kalman_states(q, step: float, noise: float | None = None) -> np.ndarray:
         In rad, rad/s and rad/s^2.
     """
     q = shaped("q", q, "(..., time, joint)")
+    filled("q", q)
     step = number("step", step, 0.0, open_low=True)
     return _later(_smoothed(q, step, _shares(q, noise, slice(None))))
 

@@ -9,7 +9,7 @@ from scipy.linalg import block_diag
 from scipy.ndimage import convolve1d
 from scipy.signal import savgol_coeffs
 
-from ddlib._check import integer, number, one_of, shaped
+from ddlib._check import integer, number, one_of, series, shaped
 from ddlib.identification.regression import Estimate, from_states, known_names
 from ddlib.logs.checking import warn_of_log
 from ddlib.simulation import Recording
@@ -63,12 +63,13 @@ class FilteredEquations:
 
     def __init__(self, regressor, width, step, pull=None, learn=_QUANTITIES):
         if not callable(regressor):
-            known_names(regressor := tuple(regressor))
+            known_names(regressor, "regressor")
+            regressor = tuple(regressor)
         if integer("width", width, 5) % 2 == 0:
             raise ValueError(f"width must be odd, so that a window has a centre, got {width}")
         self.regressor, self.width = regressor, width
         self.step = step = number("step", step, 0.0, open_low=True)
-        self.learn = [one_of("learn", name, _QUANTITIES) for name in learn]
+        self.learn = [one_of("learn", name, _QUANTITIES) for name in series("learn", learn, str)]
         self.pull = self._given = None if pull is None else number("pull", pull, 0)
         self.first = np.stack([savgol_coeffs(width, 3, k, step, use="dot") for k in range(3)])
         powers = np.linspace(-1, 1, width) ** np.arange(3)[:, None]
@@ -123,9 +124,12 @@ class FilteredEquations:
             if begin < 0 or end > runs.t.size:
                 raise ValueError(f"runs must rest {half} samples before and after their motion")
             runs, torques = (x.reshape(-1, *x.shape[-2:])[:, begin:end] for x in (runs.q, runs.tau))
-        torques, pairs = [] if torques is None else torques, []
+        runs, pairs = series("runs", runs), []
+        torques = [] if torques is None else series("torques", torques)
         if len(torques) != len(runs) or not len(runs):
-            raise ValueError(f"torques must be one for each run, got {len(torques)}, {len(runs)}")
+            raise ValueError(
+                f"runs and torques must be as many, got {len(runs)} and {len(torques)}"
+            )
         for k, (x, y) in enumerate(zip(runs, torques)):
             windows = self._windows(f"runs[{k}]", x)
             y = shaped(f"torques[{k}]", y, (len(x), windows.shape[1]))

@@ -238,8 +238,6 @@ class TorqueModel:
         """Windows in rad, ``(cases, joint, width)``, scaled for the input units."""
         instance("inputs", self.inputs, Scaler)
         instance("weights", self.weights, Weights)
-        if self.step is not None:
-            number("step", self.step, 0.0, open_low=True)
         shaped(
             "windows", windows, "(cases, {}, {})".format(*self.weights.hidden_weights.shape[-2:])
         )

@@ -38,6 +38,7 @@ def surrogate(kind: str, torque, seed: int = 0) -> np.ndarray:
 def surrogates(kind: str, torque, draws: int, seed: int = 0) -> np.ndarray:
     """Several draws, shape ``(draws, runs, time, joint)``; draw k depends on ``seed + k`` only."""
     integer("draws", draws, 1, 10**6)
+    seed_number("seed", seed)
     return np.stack([surrogate(kind, torque, seed + k) for k in range(integer("draws", draws, 1))])
 
 
