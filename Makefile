@@ -41,7 +41,7 @@ comma := ,
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
-.PHONY: help env lock book test unmeasured lint stripped unit notebooks foreign foreign-ci pages lab live colab firefox pdf epub release assignment grade reproduce bench check mutants strip clean
+.PHONY: help env lock book page test unmeasured lint stripped unit notebooks foreign foreign-ci pages lab live colab firefox pdf epub release assignment grade reproduce bench check mutants strip clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
@@ -74,6 +74,9 @@ lock: $(READY)  ## requirements.txt and requirements-test.txt anew, from pyproje
 
 book: $(READY)  ## execute the notebooks and build the pages
 	@$(BIN)/python book/_ext/build.py
+
+page: $(READY)  ## one page alone: LESSON=feedback, LESSON=evidence/feedback
+	@$(BIN)/python book/_ext/build.py --lesson "$(LESSON)"
 
 # What the tests of this machine have measured for claims, the book's pages need not measure anew.
 test: export DDLIB_MEASURED = $(CURDIR)/_build/measured
@@ -157,7 +160,7 @@ grade: $(READY)  ## a table of returned notebooks: FOLDER=returned, at most MINU
 MIRROR ?=
 live: $(READY)  ## pages that run in the browser, in _build/live; MIRROR=: whence packages come
 	@$(BIN)/python book/_ext/build.py
-	@$(WORKSHOP) book/_ext/live.py --mirror "$(MIRROR)"
+	@PYTHONPATH="$$PWD/book/_ext" $(BIN)/python -m live --mirror "$(MIRROR)"
 
 pdf: book  ## the walk and the evidence as PDFs, in _build/pdf (needs Chromium)
 	@$(BIN)/python book/_ext/pdf.py

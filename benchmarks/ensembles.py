@@ -12,7 +12,6 @@ from ddlib.setups import STATE_FEEDBACK, split
 
 MEMBERS = 32
 MOMENTUM = 0.95
-TARGETS = {11: 5.0, 21: 8.0, 41: 5.0}
 
 
 def floating_point_operations(cases: int, inputs: int, hidden: int, outputs: int) -> int:
@@ -95,7 +94,6 @@ def measure(width: int, epochs: int = 300, repeats: int = 5) -> list[dict]:
                 f"window {width}, {count} thread{'s' * (count > 1)}",
                 (f"ensemble of {MEMBERS}", per_epoch),
                 ("eager PyTorch loop", loops[count]),
-                TARGETS[width],
                 **{
                     "ratio to the loop's best thread count": loops[best] / per_epoch,
                     "best thread count of the loop": best,

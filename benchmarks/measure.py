@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 from statistics import median
 
 try:
@@ -18,6 +20,14 @@ THREADS = min(2, os.cpu_count() or 1)
 
 MEMORY_LIMIT = 2.0
 """GiB that no benchmark, chapter or result may need."""
+
+AHEAD = 2.0
+"""How many times faster than a peer its user notices."""
+
+KEPT = 2 / 3
+"""Part of the last committed ratio that a new one must keep: less is no noise."""
+
+COMMITTED = Path(__file__).resolve().parent.parent / "book" / "results" / "benchmarks.json"
 
 
 def interleaved(repeats: int, **works: Callable[[], object]) -> dict[str, dict[str, float]]:
@@ -39,10 +49,19 @@ def interleaved(repeats: int, **works: Callable[[], object]) -> dict[str, dict[s
     }
 
 
-def ratio(group: str, what: str, ours: tuple, other: tuple, target=None, **details) -> dict:
+def goal(group: str, what: str) -> float:
+    """The least ratio of a row: ahead of the peer, and no third below the last committed ratio."""
+    rows = json.loads(COMMITTED.read_text(encoding="utf-8"))["rows"] if COMMITTED.is_file() else []
+    ratios = [row["ratio"] for row in rows if (row["group"], row["what"]) == (group, what)
+              if "ratio" in row]  # fmt: skip
+    return max([AHEAD, *(KEPT * known for known in ratios)])
+
+
+def ratio(group: str, what: str, ours: tuple, other: tuple, *, judged=True, **details) -> dict:
     """A row: how many times less `ours` takes than the `other`; each is (name, seconds).
 
-    Rows of one `group` make one table; `details` are numbers that stand beside the ratio.
+    Rows of one `group` make one table; `details` are numbers that stand beside the ratio. A row
+    that is not `judged` is a figure without a verdict.
     """
     return {
         "group": group,
@@ -50,14 +69,15 @@ def ratio(group: str, what: str, ours: tuple, other: tuple, target=None, **detai
         "ours": {"name": ours[0], "seconds": ours[1]},
         "other": {"name": other[0], "seconds": other[1]},
         "ratio": other[1] / ours[1],
-        **({"at least": target} if target else {}),
+        **({"at least": goal(group, what)} if judged else {}),
         "details": details,
     }
 
 
-def limit(group: str, what: str, value: float, unit: str, most: float) -> dict:
-    """A row: a quantity that has to stay below a limit."""
-    return {"group": group, "what": what, "value": value, "unit": unit, "at most": most}
+def quantity(group: str, what: str, value: float, unit: str, most: float | None = None) -> dict:
+    """A row: a quantity, with the limit below which a reader of the book needs it, if any."""
+    row = {"group": group, "what": what, "value": value, "unit": unit}
+    return row if most is None else {**row, "at most": most}
 
 
 def not_measured(group: str, what: str, why: str) -> dict:
@@ -66,7 +86,7 @@ def not_measured(group: str, what: str, why: str) -> dict:
 
 
 def met(row: dict) -> bool | None:
-    """Whether a row reaches its target; None without one."""
+    """Whether a row reaches its goal; None without one."""
     if "at least" in row:
         return row["ratio"] >= row["at least"]
     return row["value"] <= row["at most"] if "at most" in row else None
@@ -85,4 +105,4 @@ def memory_row(what: str, who: str = "self") -> dict:
     peak, group = peak_memory(who), "Peak memory"
     if peak is None:
         return not_measured(group, what, "this system does not tell")
-    return limit(group, what, peak, "GiB", MEMORY_LIMIT)
+    return quantity(group, what, peak, "GiB", MEMORY_LIMIT)

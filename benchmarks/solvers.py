@@ -14,8 +14,6 @@ from ddlib.learning import NotConverged, Weights, WindowNetwork, default_rate, s
 from ddlib.metrics import rmss
 from ddlib.setups import STATE_FEEDBACK
 
-TARGET = 50.0
-
 
 def measure(width: int, starts: int = 25) -> list[dict]:
     """Rows of one window size: time to the error that descent has at its end, one thread."""
@@ -51,7 +49,6 @@ def _measure(width: int, starts: int) -> list[dict]:
         f"window {width}, 1 thread",
         (f"Levenberg-Marquardt, median of {starts} starts", float(np.median(taken))),
         ("eager PyTorch loop, one start", descent),
-        TARGET,
         **{
             "RMSS": error,
             "starts that reach it": reached,

@@ -1,6 +1,6 @@
 """What a site offers on its first page beside the pages: lessons that run, volumes to take along.
 
-The page has an empty place for it. What is made after the pages (by `pdf.py`, `epub.py`, `live.py`)
+The page has an empty place for it. What is made after the pages (by `pdf.py`, `epub.py`, `live`)
 fills that place anew, from the files that are there.
 """
 

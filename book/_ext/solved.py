@@ -9,34 +9,22 @@ from __future__ import annotations
 
 import ast
 import io
-import re
 from collections.abc import Mapping
 from contextlib import chdir, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 from unittest.mock import patch
 
 import nbformat
-from lessons import CHANGE_THIS, FOLDED, OWN, entries
+from answers import FOLD, STARTER, exercises, is_check, is_open, is_starter  # noqa: F401
+from lessons import CHANGE_THIS, entries
 
 from workshop.chapters import exercises as engine
 
 ROOT = Path(__file__).parents[2]
 FILE = ROOT / "book" / "variants.yml"
 DATA = ROOT / "book"  # where a lesson finds the folder `data`
-STARTER = re.compile(r"(?m)^mine = \.\.\.")
-# In Markdown, where a parser of HTML would take a "<" of a formula for a tag
-FOLD = re.compile(r"(?s)<details.*?</details>")
 IMPORT = "import"  # a setting that is a line of its own, before all others
-
-
-class Exercise(NamedTuple):
-    """An exercise of a lesson: where an answer goes, what judges it, and a right one."""
-
-    starter: str
-    check: str
-    solution: str
 
 
 @dataclass(frozen=True)
@@ -80,48 +68,6 @@ def settings_of(lesson: str, variant: int) -> dict[str, str]:
         why = f" ({known})" if isinstance(known, str) else ""
         raise ValueError(f"VARIANT must be 0 to {most} for {lesson}{why}; got {variant}")
     return known[variant - 1] if variant else {}
-
-
-def is_starter(cell) -> bool:
-    """Whether an answer goes into a cell."""
-    return cell.cell_type == "code" and STARTER.search(cell.source) is not None
-
-
-def is_check(cell) -> bool:
-    """Whether a cell judges an answer."""
-    uses = re.search(r"\bmine\b", cell.source) is not None
-    return cell.cell_type == "code" and uses and not is_starter(cell)
-
-
-def is_open(cell) -> bool:
-    """Whether a cell's code stands open to be read and run."""
-    return cell.cell_type == "code" and not {*FOLDED, "hide-cell"} & {
-        *cell.metadata.get("tags", ())
-    }
-
-
-def exercises(notebook) -> list[Exercise]:
-    """The exercises of a lesson that have a cell for an answer, in order."""
-    found, starter, check, below = [], "", "", False
-    for cell in notebook.cells:
-        if cell.cell_type == "markdown":
-            below = below or OWN.strip() in cell.source.splitlines()
-            answer = FOLD.search(cell.source)
-            if starter and check and answer:
-                found.append(Exercise(starter, check, solution(answer[0])))
-                starter = check = ""
-        elif below and is_starter(cell):
-            starter = cell.source
-        elif below and is_check(cell):
-            check = cell.source
-    return found
-
-
-def solution(answer: str) -> str:
-    """The code of a solution, in a fence or in backticks, that gives `mine`."""
-    fenced = re.findall(r"```python\n(.*?)```", answer, flags=re.S)
-    found = [code for code in fenced if "mine =" in code]
-    return (found or re.findall(r"`(mine = [^`]+)`", answer) or [""])[0]
 
 
 def assigned(source: str) -> dict[str, ast.expr]:

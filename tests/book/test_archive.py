@@ -6,10 +6,9 @@ import zipfile
 
 import pytest
 from book_pages import ROOT
-from live_pages import MIRROR, runs_through
+from live_pages import KEPT, MIRROR, pages, runs_through
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
-import live
 import release
 
 DEAD_END = {"server": "http://127.0.0.1:9", "bypass": "127.0.0.1"}  # a proxy that is not there
@@ -20,8 +19,7 @@ def unzipped(built, tmp_path):
     """What a reader has who unzips `live-VERSION.zip` into an empty folder."""
     if not MIRROR:
         pytest.skip("set DDLIB_LIVE_MIRROR to a folder or an address with Pyodide's packages")
-    kept = live.BUILD / "pyodide" / live.VERSION
-    live.write(ROOT, built, MIRROR, kept, tmp_path / "live")
+    pages.write(ROOT, built, MIRROR, KEPT, tmp_path / "live")
     release.archive(tmp_path / "live", tmp_path / "live-1.2.0.zip")
     with zipfile.ZipFile(tmp_path / "live-1.2.0.zip") as packed:
         packed.extractall(tmp_path / "unzipped")

@@ -72,7 +72,7 @@ def test_counts_by_formula(bits):
 
 def test_the_counters_units_are_binary_digits():
     x = patterns(6)
-    digits = backpropagation._counter(6).activity(x)
+    digits = NETWORKS["binary counter"](6).activity(x)
     for row, total in zip(digits, x.sum(1)):
         assert "".join(str(int(d)) for d in row[:-1]) == f"{total:03b}"[:-1]
         assert row[-1] == 1 - total % 2
@@ -88,26 +88,15 @@ def test_learning_finds_exclusive_or_and_says_when():
     assert np.isinf(none).all() and (right(early, x, y) < 1).all()
 
 
-def test_refusals():
-    for call, words in (
-        (lambda: patterns(0), "bits must be an integer from 1 to 16, got 0"),
-        (lambda: parity([0, 2]), "x must hold zeros and ones"),
-        (lambda: learn(2, 2, momentum=1.0), "momentum must lie in"),
-        (lambda: learn(2, 2, epochs=5), "epochs must be an integer from 20"),
-    ):
-        with pytest.raises(ValueError, match=words):
-            call()
-
-
 def test_best_possible_answers_to_noisy_parity():
     """A bit is read rightly with the chance p of staying below half a step; parity then has
     (1 + (2p - 1)^3) / 2.
     """
-    found = backpropagation.fine_distinctions()
+    measured = backpropagation.fine_distinctions()
     p = 0.5 * (1 + erf(0.5 / 0.25 / np.sqrt(2)))
-    best = float(found.text.split("at best ")[1].split(" %")[0])
+    best = float(measured.text.split("at best ")[1].split(" %")[0])
     assert best == pytest.approx(50 * (1 + (2 * p - 1) ** 3), abs=1.5)
-    assert 0.5 < found.value <= 1.001  # chance, and as good as can be
+    assert 0.5 < measured.value <= 1.001  # chance, and as good as can be
 
 
 def test_when_errors_reach_a_level():

@@ -19,7 +19,7 @@ K = np.arange(WIDTH) - WIDTH // 2
 X = 0.01 * K
 
 
-def said(module, answer, *given, capsys):
+def judged(module, answer, *given, capsys):
     module.check(4, answer, *given)
     return capsys.readouterr().out
 
@@ -29,23 +29,25 @@ def test_the_bend_of_a_parabola_has_the_inertia_that_made_its_torque(capsys):
     a, v, q = rng.normal(size=(3, 50, 2, 1))
     windows = (q + v * X + a * X**2 / 2).reshape(50, -1)
     given = windows, a[..., 0] * (5.0, 2.0), 4.4
-    told = {5.0: "Right: three positions weigh it roughly. The arm's own mean is 4.4 kg",
-            500.0: "Wrong: this is torque per bend.", 0.05: "Wrong: the ends are n samples",
-            2.5: "Wrong: the bend is a (n", 2.0: "Wrong: this is the elbow's.",
-            5.2: "Wrong: close", 7.0: "Wrong: divide the bend"}  # fmt: skip
-    for answer, begins in told.items():
-        assert said(window_networks, answer, *given, capsys=capsys).startswith(begins)
+    answers = {5.0: "Right: three positions weigh it roughly. The arm's own mean is 4.4 kg",
+               500.0: "Wrong: this is torque per bend.", 0.05: "Wrong: the ends are n samples",
+               2.5: "Wrong: the bend is a (n", 2.0: "Wrong: this is the elbow's.",
+               5.2: "Wrong: close", 7.0: "Wrong: divide the bend"}  # fmt: skip
+    for answer, begins in answers.items():
+        assert judged(window_networks, answer, *given, capsys=capsys).startswith(begins)
 
 
 def test_rows_after_a_step_are_judged_with_and_without_the_start(capsys):
     rng = np.random.default_rng(1)
     start, added = rng.normal(size=(6, 2, WIDTH)), 1e-3 * np.ones((6, 2, 1)) * K
-    kept = {e: [SimpleNamespace(hidden_weights=w)] for e, w in enumerate((start, start + added))}
+    networks = {
+        e: [SimpleNamespace(hidden_weights=w)] for e, w in enumerate((start, start + added))
+    }
     rough = np.median(hinton_diagrams.roughness((start + added).reshape(-1, WIDTH)))
-    told = {(rough, 0.0): "Right: training writes", (0.0, rough): "Wrong: the other way round",
-            (rough, rough): "Wrong: subtract the start", (0.0, 0.0): "Wrong: take"}  # fmt: skip
-    for answer, begins in told.items():
-        assert said(hinton_diagrams, answer, kept, capsys=capsys).startswith(begins)
+    answers = {(rough, 0.0): "Right: training writes", (0.0, rough): "Wrong: the other way round",
+               (rough, rough): "Wrong: subtract the start", (0.0, 0.0): "Wrong: take"}  # fmt: skip
+    for answer, begins in answers.items():
+        assert judged(hinton_diagrams, answer, networks, capsys=capsys).startswith(begins)
 
 
 @pytest.mark.parametrize(
@@ -54,10 +56,10 @@ def test_rows_after_a_step_are_judged_with_and_without_the_start(capsys):
 )
 def test_a_row_gives_what_it_gives_for_the_motion_itself(row, answer, capsys):
     """0.1 + x + x² at each sample: 2.1 by position and 0.077 by acceleration, of a row of ones."""
-    told = said(convolution_filters, answer, row, 0.01, capsys=capsys)
-    assert told.startswith("Right: a row adds up its answers")
+    text = judged(convolution_filters, answer, row, 0.01, capsys=capsys)
+    assert text.startswith("Right: a row adds up its answers")
     wrong = row @ (0.1 - X + 2 * X**2) + 0.05
-    assert said(convolution_filters, wrong, row, 0.01, capsys=capsys).startswith("Wrong")
+    assert judged(convolution_filters, wrong, row, 0.01, capsys=capsys).startswith("Wrong")
 
 
 def test_the_filter_with_the_recorded_torques_is_found_whatever_its_shape(capsys):
@@ -67,20 +69,22 @@ def test_the_filter_with_the_recorded_torques_is_found_whatever_its_shape(capsys
     torque = (windows @ true + 7.0).reshape(2, 150, 1)
     six = np.array([0.5 * true, -true, rng.normal(size=4), true, 1.4 * true, 0 * true])
     given = six, windows, torque
-    assert said(whose_filters, 4, *given, capsys=capsys).startswith("Right: its torques have an")
-    told = said(whose_filters, 1, *given, capsys=capsys)
-    assert told.startswith("Wrong: its torques miss the arm's by an RMSS of 0.50.")
-    assert said(whose_filters, 2, *given, capsys=capsys).startswith("Wrong: its torques go down")
-    assert said(whose_filters, 7, *given, capsys=capsys).startswith("Wrong: the filters are count")
+    assert judged(whose_filters, 4, *given, capsys=capsys).startswith("Right: its torques have an")
+    text = judged(whose_filters, 1, *given, capsys=capsys)
+    assert text.startswith("Wrong: its torques miss the arm's by an RMSS of 0.50.")
+    assert judged(whose_filters, 2, *given, capsys=capsys).startswith("Wrong: its torques go down")
+    assert judged(whose_filters, 7, *given, capsys=capsys).startswith(
+        "Wrong: the filters are count"
+    )
 
 
 def test_half_of_the_inertia_is_left_where_the_penalty_is_the_variance(capsys):
     given = lambda p: 6.0 * 3e-4 / (3e-4 + p), 8e-4
-    told = {3e-4: "Right: a penalty as small", 3.2e-4: "Right", 8e-4: "Wrong: this is what the",
-            3.5e-4: "Wrong: close", 1e-6: "Wrong: more than half", 1e-2: "Wrong: less than half",
-            -1.0: "Wrong: a penalty is positive"}  # fmt: skip
-    for answer, begins in told.items():
-        assert said(inertia_in_the_weights, answer, *given, capsys=capsys).startswith(begins)
+    answers = {3e-4: "Right: a penalty as small", 3.2e-4: "Right", 8e-4: "Wrong: this is what the",
+               3.5e-4: "Wrong: close", 1e-6: "Wrong: more than half", 1e-2: "Wrong: less than half",
+               -1.0: "Wrong: a penalty is positive"}  # fmt: skip
+    for answer, begins in answers.items():
+        assert judged(inertia_in_the_weights, answer, *given, capsys=capsys).startswith(begins)
 
 
 @pytest.mark.parametrize("width", [5, 7, 9, 11, 13, 21, 101])

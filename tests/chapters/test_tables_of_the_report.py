@@ -28,8 +28,6 @@ def test_table_6_1_has_the_readers_errors_in_order():
     assert [row[-1] for row in table.rows] == ["0.10", "0.20", "0.30", "0.40"]
     printed = [float(row[1]) for row in table.rows]
     assert printed == [*paper.TABLE_6_1.values(), paper.TABLE_6_1["trajectory 6"]]
-    with pytest.raises(ValueError):
-        whole_state_space.table_6_1([0.1])
 
 
 def test_acceleration_by_window():

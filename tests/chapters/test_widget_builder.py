@@ -32,19 +32,21 @@ def evaluate(browser):
 
 def drawn(n=20, seed=0):
     """Filters as a reader may draw them, some with a mean and some without."""
-    f = np.random.default_rng(seed).integers(-builder._LEVELS, builder._LEVELS + 1, (n, 21))
-    f = np.cumsum(f, axis=1) / builder._LEVELS
+    f = np.cumsum(np.random.default_rng(seed).uniform(-1, 1, (n, 21)), axis=1)
     return np.concatenate([f, f - f.mean(1, keepdims=True)])
 
 
-def test_a_readers_own_arm_without_an_encoder():
-    """Nothing is rounded, so that least squares measure the acceleration all the better."""
+def least_squares(widget):
+    """The weights that the page lays over one's own."""
+    return next(np.array(f) for name, _, f in widget.spec["rivals"] if name == "least")
+
+
+def test_a_readers_own_arm_without_an_encoder(widget):
+    """Its motion is another one, and nothing is rounded."""
     own = replace(JOINT_DAMPING, arm=with_load(CMU_DD_ARM_II, 4.0), effects=IDEAL)
-    widget, given = FilterBuilder(np.ones(21), own), FilterBuilder(np.ones(21))
-    assert widget.motion != given.motion and widget.spec["step"] < 1e-6
-    left = [builder._fitted(builder._least_squares(s), 0.0, s) - builder.readings(s)[1]
-            for s in (own, JOINT_DAMPING)]  # fmt: skip
-    assert np.std(left[0]) < 0.1 * np.std(left[1])
+    other = FilterBuilder(np.ones(21), own)
+    assert other.motion != widget.motion and other.spec["step"] < 1e-6
+    assert np.abs(least_squares(other)).max() > 2 * np.abs(least_squares(widget)).max()
 
 
 # The error
@@ -57,39 +59,40 @@ def test_the_error_is_what_is_left_of_the_acceleration():
     states[:, 0, 2] = builder.readings()[1]
     states[:, 0, :2] = np.random.default_rng(0).normal(size=(len(states), 2))
     alone = filter_responses(f[:, None], builder.windows()[:, None], states).alone[:, 0, 2]
-    np.testing.assert_allclose([1 - builder.score(one) ** 2 for one in f], alone, atol=1e-9)
+    np.testing.assert_allclose([1 - builder.score(weights) ** 2 for weights in f], alone, atol=1e-9)
     assert builder.score(np.zeros(21)) == pytest.approx(1, abs=1e-12)
 
 
-def test_nothing_beats_least_squares_here():
-    best = builder._least_squares()
+def test_nothing_beats_least_squares_here(widget):
+    best = least_squares(widget)
     least, size = builder.score(best), np.abs(best).max()
     rng = np.random.default_rng(2)
     for far in (1e-3, 1e-2, 0.1, 1.0):
         for _ in range(20):
             assert builder.score(best + far * size * rng.normal(size=21)) > least
-    elsewhere = [builder.score(best, zero) for zero in builder._zeros(JOINT_DAMPING)[1:]]
+    elsewhere = [builder.score(best, zero) for zero in widget.spec["zeros"][1:]]
     assert np.median(elsewhere) > 1.05 * least
 
 
 @pytest.mark.browser
-def test_the_page_computes_the_same(evaluate):
+def test_the_page_computes_the_same(evaluate, widget):
     q, truth, step = builder.readings()
-    every = [*drawn(), *builder.starts().values(), builder._least_squares()]
-    zeros = builder._zeros(JOINT_DAMPING)[[0, 3, 20]]
+    every = [*drawn(), *builder.starts().values(), least_squares(widget)]
+    zeros = [widget.spec["zeros"][k] for k in (0, 3, 20)]
     fits = evaluate(
         """([q, truth, step, zeros, filters]) => filters.map((f) => zeros.map((zero) => {
           const seen = q.map((x) => encoderReading(step, x + zero) - zero);
           const fit = fittedTo(truth, f, seen);
           return { error: fit.error, output: [...fit.output] };
         }))""",
-        [q.tolist(), truth.tolist(), step, zeros.tolist(), [list(map(float, f)) for f in every]],
+        [q.tolist(), truth.tolist(), step, zeros, [list(map(float, f)) for f in every]],
     )
     for f, row in zip(every, fits):
         for zero, fit in zip(zeros, row):
             assert fit["error"] == pytest.approx(builder.score(f, zero), abs=1e-9)
-            np.testing.assert_allclose(fit["output"], builder._fitted(f, zero), atol=1e-7)
-    nu = builder._FREQUENCIES
+            far = np.std(fit["output"] - truth) / np.std(truth)
+            assert far == pytest.approx(fit["error"], abs=1e-9)
+    nu = np.geomspace(0.5, 50.0, 81)
     for f in drawn(2):
         given = [f.tolist(), nu.tolist(), LOG_STEP]
         gain = evaluate("([f, nu, step]) => nu.map((x) => gainOf(f, x, step))", given)

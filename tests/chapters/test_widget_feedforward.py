@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from widget_pages import PATHS, assert_curves, page_of
+from widget_pages import PATHS, SET, assert_curves, page_of
 
 from ddlib.control import Feedforward, proportional
-from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_KP as KP
+from ddlib.effects import CoulombFriction, Effects, ViscousFriction
+from ddlib.setups import (
+    JOINT_DAMPING,
+    JOINT_DAMPING_COULOMB,
+    JOINT_DAMPING_KP as KP,
+    JOINT_DAMPING_VISCOUS,
+)
 from ddlib.simulation import record
 from ddlib.trajectories import APPENDIX_I
-from workshop.chapters.widgets.feedforward import _FRICTION, _TIMES, FeedforwardSwitches
+from workshop.chapters.widgets.feedforward import FeedforwardSwitches
 
 
 @pytest.fixture(scope="module")
@@ -22,21 +28,22 @@ def test_with_the_jump_it_is_a_recording(switches):
     """By `record`, whose motion follows a rest."""
     arm = JOINT_DAMPING.arm
     law = Feedforward(arm, proportional(KP))
-    recording = record(arm, law, APPENDIX_I[0], effects=_FRICTION)
+    joints = ViscousFriction(JOINT_DAMPING_VISCOUS), CoulombFriction(JOINT_DAMPING_COULOMB)
+    recording = record(arm, law, APPENDIX_I[0], effects=Effects(friction=joints))
     shown = switches.curves_at(model=True, jump=True)
     moving = recording.motion
     error = np.rad2deg(recording.tracking_error[moving, 0])
     np.testing.assert_allclose(shown["shoulder error"], error, atol=1e-6)
     torque = shown["shoulder ahead"] + shown["shoulder back"]
     np.testing.assert_allclose(torque, recording.tau_true[moving, 0], atol=1e-5)
-    assert len(error) == len(_TIMES)
+    assert len(error) == 300
 
 
 def test_model_and_feedback_multiply(switches):
     """On the arm without friction a model's error is the share that is left."""
-    for masses in (0, 80, 100, 120, 200):
-        left = switches.curves_at(model=True, masses=masses, friction=False)["share"][0]
-        assert left == pytest.approx(abs(100 - masses), abs=0.5)
+    for masses in (0, 80, 100, 200):
+        share = switches.curves_at(model=True, masses=masses, friction=False)["share"][0]
+        assert share == pytest.approx(abs(100 - masses), abs=0.5)
     rubbing = [switches.curves_at(model=True, known=known)["share"][0] for known in (0 > 1, True)]
     assert 25 < rubbing[0] < 45 and rubbing[1] < 1
     assert switches.curves_at(model=True, feedback=False)["share"][0] > 1000
@@ -44,17 +51,14 @@ def test_model_and_feedback_multiply(switches):
 
 @pytest.mark.browser
 def test_the_page_computes_and_says_the_same(tmp_path, visit, switches):
-    url = page_of(tmp_path / "page.html", switches)
-    key = switches.spec["key"]
+    page = visit(page_of(tmp_path / "page.html", switches)).page
     for setting in (
         {"model": True, "masses": 130.0, "known": True},
         {"model": True, "feedback": False},
         {"model": True, "friction": False, "jump": True},
     ):
-        texts = {name: str(value).lower() for name, value in setting.items()}
-        query = ",".join(f"{name}:{text}" for name, text in texts.items())
-        page = visit(f"{url}?{key}={query}").page
-        assert_curves(page, switches._function(**{**switches.values, **setting}), 1e-5)
+        page.evaluate(SET, {**switches.values, **setting})
+        assert_curves(page, switches.curves_at(**setting), 1e-5)
 
 
 @pytest.mark.browser

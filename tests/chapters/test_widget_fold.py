@@ -46,27 +46,9 @@ def test_a_line_hears_speed_alone_and_a_parabola_acceleration_alone(widget):
     for row, motion, part in (("line", "speed", 2), ("parabola", "acceleration", 1)):
         for moved, most in (("angle", 5), ("speed", 50), ("acceleration", 1000)):
             shown = widget.curves_at(**{**still, "row": row, moved: most})
+            assert np.abs(shown["answers"]).max() <= shown["most answer"][0]
             heard = np.abs(shown["answers"]) > 0.01 * shown["most answer"]
             assert heard.tolist() == [moved == motion and k in (part, 3) for k in range(4)]
-
-
-def test_all_answers_stay_on_the_chart(widget):
-    for values in settings(widget, 40, seed=3):
-        shown = widget.curves_at(**values)
-        if sum(abs(values[name]) > 0 for name in ("angle", "speed", "acceleration")) == 1:
-            assert np.abs(shown["answers"]).max() <= shown["most answer"][0]
-
-
-def test_refusals():
-    for rows, error, message in (
-        ({"a": S}, TypeError, "rows must map two labels or more"),
-        ({"a": S, "b": S[:-2]}, ValueError, r"rows\['b'\] must have shape"),
-        ({"a": S[:-1], "b": S[:-1]}, ValueError, "odd"),
-    ):
-        with pytest.raises(error, match=message):
-            FilterFold(rows, LOG_STEP)
-    with pytest.raises(ValueError, match="step must"):
-        FilterFold(ROWS, 0.0)
 
 
 @pytest.mark.browser

@@ -41,9 +41,9 @@ def test_the_page_says_what_ddlib_says(evaluate, kind, n):
     settings = drawn(sentence, n, 3)
     if kind is LoopSentence:  # not where rounding decides
         settings = [s for s in settings if abs(sentence.growth(**s)) > 1e-6]
-    said = evaluate(ENDS, [sentence.spec, settings])
-    assert len({str(x) for x in said}) > n / 4
-    for values, texts in zip(settings, said):
+    ends = evaluate(ENDS, [sentence.spec, settings])
+    assert len({str(x) for x in ends}) > n / 4
+    for values, texts in zip(settings, ends):
         known = sentence.results(**values)
         assert {k: v.replace(SPACE, " ") for k, v in texts.items()} == known
 

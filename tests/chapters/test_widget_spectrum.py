@@ -8,74 +8,45 @@ from widget_pages import assert_exact_table, settings
 
 from ddlib.analysis import basis
 from ddlib.learning import Directions
-from workshop.chapters.why_smooth_filters import _FLOOR, _WHO, _SpectrumExplorer
+from ddlib.setups import WINDOWS
+from workshop.chapters.why_smooth_filters import _SpectrumExplorer
+from workshop.report import results
 
-EPOCHS = (0, 1, 10, 100, 1000, 20_000)
-WIDTHS, SHOWN = (7, 11), 5
-READINGS = [("quiet", (0.0, 1.0)), ("quiet", (-1.0, 1.0))]
+STUDY = results.read("span")
 
 
 def directions(width):
-    """Five directions: of position, velocity, acceleration and jerk of one joint, and the bias."""
+    """Of position, velocity, acceleration and jerk of one joint, and the bias; the rest is zero."""
     axes = np.zeros((2 * width + 1, 2 * width + 1))
     for k, taps in enumerate(basis(width)):
         axes[k, (k % 2) * width : (k % 2 + 1) * width] = taps
     axes[4, -1] = 1.0
-    values = 10.0 ** -np.arange(len(axes))
-    return Directions(values, axes, np.zeros((1, len(axes))), 2)
-
-
-def cell(setup, scaling, width, rng):
-    def course():
-        grows = np.cumprod(rng.uniform(1, 30, (len(EPOCHS), SHOWN)), 0) * 1e-6
-        return {
-            "change over start": (grows * (np.arange(len(EPOCHS)) > 0)[:, None]).tolist(),
-            "error": rng.uniform(0, 1, (len(EPOCHS), SHOWN)).tolist(),
-        }
-
-    return {
-        "setup": setup,
-        "scaling": list(scaling),
-        "width": width,
-        "variance": (10.0 ** (-2 * np.arange(2 * width + 1))).tolist(),
-        **{who: course() for who in _WHO},
-    }
+    return Directions(np.ones(len(axes)), axes, np.zeros((1, len(axes))), 2)
 
 
 @pytest.fixture(scope="module")
-def study():
-    rng = np.random.default_rng(4)
-    cells = [cell(*reading, width, rng) for reading in READINGS for width in WIDTHS]
-    return {"epochs": list(EPOCHS), "cells": cells}
+def widget():
+    return _SpectrumExplorer(STUDY, [directions(cell["width"]) for cell in STUDY["cells"]])
 
 
-@pytest.fixture(scope="module")
-def along(study):
-    return [directions(cell["width"]) for cell in study["cells"]]
-
-
-@pytest.fixture(scope="module")
-def widget(study, along):
-    return _SpectrumExplorer(study, along)
-
-
-def test_curves_are_those_of_the_study(widget, study, along):
+def test_curves_are_those_of_the_study(widget):
     assert_exact_table(widget)
     for values in settings(widget, 40, seed=1):
-        at = 2 * values["case"] + WIDTHS.index(values["width"])
-        cell, k = study["cells"][at], values["direction"] - 1
-        row, shown = EPOCHS.index(values["epoch"]), widget.at_grid(**values)
-        zeros = (max(WIDTHS) - values["width"]) // 2
-        for joint, f in zip(("shoulder", "elbow"), along[at].filters[k]):
+        cell = STUDY["cells"][3 * values["case"] + WINDOWS.index(values["width"])]
+        assert cell["width"] == values["width"]
+        k, row = values["direction"] - 1, STUDY["epochs"].index(values["epoch"])
+        shown = widget.at_grid(**values)
+        zeros = (max(WINDOWS) - values["width"]) // 2
+        for joint, f in zip(("shoulder", "elbow"), directions(values["width"]).filters[k]):
             np.testing.assert_allclose(shown[f"{joint} shape"], np.pad(f, zeros), atol=2e-4)
-        for who in _WHO:
+        for who in ("measured", "predicted"):
             change = np.array(cell[who]["change over start"])[1:, k]
-            kept = np.maximum(np.log10(change), _FLOOR)
-            np.testing.assert_allclose(shown[f"change {who}"], kept, atol=2e-3)
-            assert shown[f"now {who}"][0] == pytest.approx(kept[row - 1], abs=2e-3)
+            powers = np.log10(np.maximum(change, 1e-8))  # less is not shown
+            np.testing.assert_allclose(shown[f"change {who}"], powers, atol=2e-3)
+            assert shown[f"now {who}"][0] == pytest.approx(powers[row - 1], abs=2e-3)
             error = np.array(cell[who]["error"])[1:, k]
             np.testing.assert_allclose(shown[f"error {who}"], error, atol=2e-4)
-        assert shown["variance"][0] == pytest.approx(-2 * k, abs=2e-3)
+        assert shown["variance"][0] == pytest.approx(np.log10(cell["variance"][k]), abs=2e-3)
 
 
 def test_shares_name_the_derivative(widget):

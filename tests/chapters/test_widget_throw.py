@@ -9,10 +9,10 @@ from widget_pages import CALM, LESSONS, NEXT_FRAME, functions, page_of
 from ddlib.analysis import savitzky_golay, shares
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.learning import sliding_windows
-from ddlib.setups import JOINT_DAMPING, POSITION_FEEDBACK, STATE_FEEDBACK
+from ddlib.setups import JOINT_DAMPING
 from ddlib.trajectories import APPENDIX_I
 from workshop.chapters.index import both as station_row
-from workshop.chapters.widgets.throw import _REST, ThrownArm
+from workshop.chapters.widgets.throw import ThrownArm
 from workshop.report import results
 
 WORLD = """([spec, weights, moves]) => {
@@ -48,14 +48,11 @@ def moved(evaluate, widget, *moves):
 
 
 @pytest.mark.browser
-@pytest.mark.parametrize(
-    "setup", [JOINT_DAMPING, STATE_FEEDBACK, POSITION_FEEDBACK], ids=lambda setup: setup.name
-)
-def test_a_played_motion_is_that_of_the_simulator(evaluate, setup):
-    model = results.networks(21, setup.name)[3]
-    silent = setup.effects.without("torque_sensor")
-    known = setup.record(APPENDIX_I[[5]], effects=silent, rest=_REST)[0]
-    seen = moved(evaluate, ThrownArm(model, setup), ["play", 0, 5 * len(known.t)])
+def test_a_played_motion_is_that_of_the_simulator(evaluate, widget):
+    model = results.median_network(21, JOINT_DAMPING.name)
+    silent = JOINT_DAMPING.effects.without("torque_sensor")
+    known = JOINT_DAMPING.record(APPENDIX_I[[5]], effects=silent, rest=widget.spec["rest"])[0]
+    seen = moved(evaluate, widget, ["play", 0, 5 * len(known.t)])
     last = slice(-len(seen("q")), None)
     np.testing.assert_allclose(seen("q"), known.q[last], atol=1e-6)
     np.testing.assert_allclose(seen("tau"), known.tau_true[last], atol=1e-4)
@@ -96,8 +93,8 @@ def test_weights_fold_into_a_constant_a_line_and_a_parabola(evaluate):
         whole = np.sum(parts, axis=0)
         np.testing.assert_allclose(whole, f, atol=1e-12)
         np.testing.assert_allclose(got["shares"], shares(f)[:3], atol=1e-9)
-        left = np.array(got["left"])
-        assert np.abs([left.sum(), left @ n, left @ n**2]).max() < 1e-8
+        rest = np.array(got["left"])
+        assert np.abs([rest.sum(), rest @ n, rest @ n**2]).max() < 1e-8
         assert np.ptp(got["constant"]) == 0
 
 
@@ -130,7 +127,7 @@ def until(page, holds: str):
     page.wait_for_function(f"(({{ world }}) => {holds})({{ world: {world} }})")
 
 
-def said(page) -> str:
+def status(page) -> str:
     return page.locator(".said").inner_text()
 
 
@@ -153,7 +150,7 @@ def test_the_hand_is_pulled_by_pointer_and_keys(tmp_path, visit, widget):
     held = page.evaluate(STATE)
     assert page.locator(".rope").get_attribute("visibility") == "visible"
     page.mouse.up()
-    assert page.evaluate(STATE)["mode"] == "free" and "friction" in said(page)
+    assert page.evaluate(STATE)["mode"] == "free" and "friction" in status(page)
     until(page, f"world.places()[1][1] !== {held['hand'][1]}")
     press(page, "Reset")
     assert page.evaluate(STATE)["q"] == [0, 0]

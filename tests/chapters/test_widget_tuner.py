@@ -12,21 +12,16 @@ from widget_pages import CALM, NEXT_FRAME, PATHS, drag, functions, page_of
 from ddlib.control import PID, Feedforward, closed_loop, plant
 from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM
 from ddlib.effects import Effects, ViscousFriction
+from ddlib.setups import JOINT_DAMPING_KP as KP, JOINT_DAMPING_VISCOUS as VISCOUS
 from ddlib.simulation import CONTROL_STEP, record
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets.engine import _loops as loops
-from workshop.chapters.widgets.tuner import (
-    _QUESTIONS,
-    _START,
-    _TIMES,
-    _VISCOUS,
-    PIDTuner,
-    _gains,
-    tuned,
-)
+from workshop.chapters.widgets.tuner import PIDTuner, tuned
 
 ARM = CMU_DD_ARM_II
-LATE = (_TIMES >= 1) & (_TIMES < 3)
+START = {"kp": KP[0], "ki": 0.0, "kd": 0.0, "late": 0, "feedforward": False}
+TIMES = 0.01 * np.arange(351)
+LATE = (TIMES >= 1) & (TIMES < 3)
 JOINTS = ("shoulder", "elbow")
 
 
@@ -44,7 +39,13 @@ def engine(browser):
 @cache
 def known_run(**setting):
     """The same by ddlib; settings that are not given are those of the start."""
-    return tuned(ARM, **{**_START, **setting})
+    return tuned(ARM, **{**START, **setting})
+
+
+def gains(kp, ki, kd):
+    """Of both joints, from the shoulder's."""
+    stiff = np.array([1.0, KP[1] / KP[0]])
+    return {"kp": kp * stiff, "ki": ki * stiff, "kd": kd * np.array([1.0, 0.2])}
 
 
 def rms(x):
@@ -54,18 +55,17 @@ def rms(x):
 # What is computed
 
 
-@pytest.mark.parametrize("feedforward", [False, True])
-def test_curves_are_the_recorded_ones(feedforward):
-    """The same runs with a rest before the motion, by `record`."""
-    feedback = PID(**_gains(200, 100, 30))
+def test_curves_are_the_recorded_ones():
+    """The same run with a rest before the motion, by `record`."""
+    feedback = PID(**gains(200, 100, 30))
     recording = record(
         ARM,
-        Feedforward(ARM, feedback) if feedforward else feedback,
+        Feedforward(ARM, feedback),
         APPENDIX_I[5],
-        effects=Effects(friction=(ViscousFriction(_VISCOUS),)),
+        effects=Effects(friction=(ViscousFriction(VISCOUS),)),
     )
-    shown = tuned(ARM, 200, 100, 30, 0, feedforward)
-    at = np.searchsorted(recording.t, _TIMES[_TIMES < 2.9995] - 1e-9)
+    shown = tuned(ARM, 200, 100, 30, 0, True)
+    at = np.searchsorted(recording.t, TIMES[TIMES < 2.9995] - 1e-9)
     error = np.rad2deg(recording.tracking_error)
     for j, joint in enumerate(JOINTS):
         np.testing.assert_allclose(shown[f"{joint} error"][: len(at)], error[at, j], atol=1e-9)
@@ -86,17 +86,17 @@ def test_growth_and_margins_are_python_controls(engine, arm):
     """At random gains, delays and control periods; the margins where a loop is stable."""
     rng = np.random.default_rng(7)
     given, wanted = [], []
-    for k in range(60):
+    for k in range(30):
         kp, kd = rng.uniform(40, 1200), rng.uniform(0, 80) * (k % 4 > 0)
-        law = _gains(kp, rng.uniform(0, 900) * (k % 3 > 0), kd)
+        law = gains(kp, rng.uniform(0, 900) * (k % 3 > 0), kd)
         step, late = rng.choice([0.0005, 0.002, 0.008]), int(rng.choice([0, 1, 3, 20]))
-        near = loops.linear(arm, _VISCOUS, law, late, step)
+        near = loops.linear(arm, VISCOUS, law, late, step)
         given.append([{name: x.tolist() for name, x in law.items()}, step, late])
         wanted.append([near.growth, *np.ravel([near.phase_deg, near.crossover], order="F")])
-    answer = np.array(engine(LINEAR, [loops.modes(arm, _VISCOUS), given]), dtype=float)
+    answer = np.array(engine(LINEAR, [loops.modes(arm, VISCOUS), given]), dtype=float)
     wanted = np.array(wanted)
     stable = wanted[:, 0] < 0
-    assert 10 < stable.sum() < 50
+    assert 5 < stable.sum() < 25
     np.testing.assert_allclose(answer[:, 0], wanted[:, 0], rtol=1e-6, atol=1e-6)
     np.testing.assert_allclose(answer[stable], wanted[stable], rtol=1e-5, atol=1e-5)
 
@@ -105,15 +105,16 @@ def test_growth_and_margins_are_python_controls(engine, arm):
 
 
 def swing(run, begin, end):
-    at = (_TIMES >= begin) & (_TIMES < end)
+    at = (TIMES >= begin) & (TIMES < end)
     return max(np.ptp(run[f"{joint} error"][at]) / 2 for joint in JOINTS)
 
 
-def test_what_happens_if():
+def test_what_happens_if(tuner):
     """Each answer that the page calls right, by ddlib, with a margin."""
-    before, after = zip(*([known_run(**x) for x in (q.first, q.change)] for q in _QUESTIONS))
+    questions = tuner.loop["questions"]
+    before, after = zip(*([known_run(**x) for x in q["settings"]] for q in questions))
     for k in (0, 2, 4, 5):
-        assert "grows" in _QUESTIONS[k].choices[_QUESTIONS[k].right]
+        assert "grows" in questions[k]["choices"][questions[k]["right"]]
         assert after[k]["growth"] > 0.5 and after[k]["stopped"] < 2.8
         assert before[k]["growth"] < 0 and np.isnan(before[k]["stopped"])
     for k in (1, 3):  # settles, where it grew
@@ -149,7 +150,7 @@ def assert_computed(page, **setting):
         for got, name in ((seen["rms"][j], "RMS"), (seen["margins"][j]["phase"], "phase margin")):
             assert got == pytest.approx(known[f"{joint} {name}"], rel=1e-5, nan_ok=True)
     assert seen["growth"] == pytest.approx(known["growth"], rel=1e-6)
-    ended = np.nan if seen["stopped"] is None else _TIMES[seen["stopped"]]
+    ended = np.nan if seen["stopped"] is None else TIMES[seen["stopped"]]
     assert ended == pytest.approx(known["stopped"], nan_ok=True)
 
 
@@ -170,7 +171,7 @@ def test_drag_keys_switch_and_the_ghost(tmp_path, visit, tuner):
     assert len(before) == 8 and all(a != b for a, b in zip(before[1::2], dragged[1::2]))
     kp = value_of(page, tuner, "kp")
     assert_computed(page, kp=kp)
-    assert page.evaluate(SEEN)["before"] == _START  # the ghost stands where the change began
+    assert page.evaluate(SEEN)["before"] == START  # the ghost stands where the change began
     page.wait_for_timeout(1000)  # a new change begins
     page.locator("input[id$=-kd]").press("End")
     page.locator("input[id$=-ki]").press("ArrowRight")
@@ -178,7 +179,7 @@ def test_drag_keys_switch_and_the_ghost(tmp_path, visit, tuner):
     ki = value_of(page, tuner, "ki")
     page.locator("input[id$=-late]").press("ArrowRight")
     assert_computed(page, kp=kp, kd=150.0, ki=ki, late=1)
-    assert page.evaluate(SEEN)["before"] == {**_START, "kp": pytest.approx(kp)}
+    assert page.evaluate(SEEN)["before"] == {**START, "kp": pytest.approx(kp)}
     assert "stable" in page.locator(".verdict").inner_text()
     page.get_by_role("switch").press("Space")
     assert_computed(page, kp=kp, kd=150.0, ki=ki, late=1, feedforward=True)
@@ -191,12 +192,12 @@ def test_an_unstable_loop_says_what_would_calm_it(tmp_path, visit, tuner):
     url = page_of(tmp_path / "page.html", tuner)
     page = visit(f"{url}?pidtuner=kd:100,late:20", **CALM).page
     page.wait_for_function("/%/.test(document.querySelector('.remedy').textContent)")
-    told = page.locator(".remedy").inner_text()
-    part = float(re.search(r"([\d.]+)\s%", told)[1]) / 100
-    whole, joints = {**_START, "kd": 100.0}, plant(ARM.mass_matrix([0.0, 0.0]), _VISCOUS)
+    remedy = page.locator(".remedy").inner_text()
+    part = float(re.search(r"([\d.]+)\s%", remedy)[1]) / 100
+    whole, joints = {**START, "kd": 100.0}, plant(ARM.mass_matrix([0.0, 0.0]), VISCOUS)
     stable = []
     for share in (0.96, 1.04):
-        law = _gains(*(part * share * whole[name] for name in ("kp", "ki", "kd")))
+        law = gains(*(part * share * whole[name] for name in ("kp", "ki", "kd")))
         loop = closed_loop(joints, **law, period=CONTROL_STEP, delay=20)
         stable.append(np.abs(loop.poles()).max() < 1)
     assert stable == [True, False]

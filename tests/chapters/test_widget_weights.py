@@ -67,7 +67,8 @@ def test_curves_are_the_weights_less_the_start(widget, pair):
 def test_what_was_added_is_smooth(widget):
     for unit in ("hidden 0", "elbow torque"):
         trained, added = (
-            widget.at_grid(subtract=each, unit=unit)["roughness"][0] for each in (False, True)
+            widget.at_grid(subtract=less_start, unit=unit)["roughness"][0]
+            for less_start in (False, True)
         )
         assert added < 0.1 and added < trained
 
@@ -78,14 +79,10 @@ def test_its_still_has_the_diagram_and_the_curve(widget):
     assert "blobs" in widget.still_alt
 
 
-def test_it_refuses_networks_that_are_no_pair(pair):
-    start, trained = pair
-    other = Weights.random(1, WIDTH + 2, HIDDEN)[0]
-    for wrong in ((other, trained), (Weights.random(2, WIDTH), Weights.random(2, WIDTH))):
-        with pytest.raises(ValueError, match="start and trained must be one network"):
-            WeightReader(*wrong, LOG_STEP)
-    with pytest.raises(ValueError, match="unit must be one of"):
-        WeightReader(start, trained, LOG_STEP, unit="hidden 9")
+def test_networks_that_are_no_pair_are_refused(pair):
+    """A reader shows networks of their own."""
+    with pytest.raises(ValueError, match="start and trained must be one network"):
+        WeightReader(Weights.random(1, WIDTH + 2, HIDDEN)[0], pair[1], LOG_STEP)
 
 
 # In a page without a kernel
@@ -93,12 +90,12 @@ def test_it_refuses_networks_that_are_no_pair(pair):
 
 def squares(page) -> np.ndarray:
     """Centre and signed area of the squares above the curve, from left to right."""
-    found = []
+    marks = []
     for sign, name in ((1, "positive"), (-1, "negative")):
         path = page.locator(f"svg.strip .{name}").get_attribute("d") or ""
         for x, a in re.findall(r"M([\d.-]+) [\d.-]+h([\d.]+)", path):
-            found.append((float(x) + float(a) / 2, sign * float(a) ** 2))
-    return np.array(sorted(found))
+            marks.append((float(x) + float(a) / 2, sign * float(a) ** 2))
+    return np.array(sorted(marks))
 
 
 def assert_shown(page, pair, unit, joint, subtract):

@@ -106,17 +106,6 @@ def test_the_torque_is_covered_from_the_window_on(hidden, test_run):
         assert curves["low"][0] < -np.abs(test_run.tau[motion, j]).max()
 
 
-@pytest.mark.parametrize(
-    "given, says",
-    [({"width": 20}, "width must be odd"), ({"recording": STATE_FEEDBACK}, "one run")],
-)
-def test_what_it_refuses(test_run, given, says):
-    if "recording" in given:
-        given = {"recording": split(STATE_FEEDBACK.record())[0]}
-    with pytest.raises(ValueError, match=says):
-        HiddenTorque(**{"recording": test_run, **given})
-
-
 @pytest.mark.browser
 def test_the_page_hides_and_uncovers_it(tmp_path, visit, hidden):
     opened = visit(page_of(tmp_path / "page.html", hidden) + "?hidden-torque=sample:75")

@@ -1,4 +1,4 @@
-"""The benchmarks: python-control is asked for our loop, and a failure writes nothing."""
+"""The benchmarks: python-control is asked for our loop, goals, and a failure writes nothing."""
 
 from __future__ import annotations
 
@@ -28,10 +28,34 @@ def test_python_control_repeats_our_loop(quantised, written):
     np.testing.assert_allclose(theirs, ours.q_true[0], atol=1e-12)
 
 
+@pytest.mark.parametrize(
+    "committed, now, reached",
+    [
+        (None, 2.1, True),
+        (None, 1.9, False),
+        (60.0, 41.0, True),
+        (60.0, 39.0, False),
+        (2.4, 1.9, False),
+    ],
+)
+def test_a_goal_is_to_be_ahead_and_to_stay_so(committed, now, reached, tmp_path, monkeypatch):
+    """Twice as fast as the peer, and no third slower than what is committed."""
+    monkeypatch.setattr(measure, "COMMITTED", tmp_path / "benchmarks.json")
+
+    def row(ratio, **options):
+        return measure.ratio("g", "w", ("ours", 1.0), ("peer", ratio), **options)
+
+    if committed:
+        rows = [measure.quantity("g", "w", 99.0, "s"), row(committed, judged=False)]
+        measure.COMMITTED.write_text(json.dumps({"rows": rows}))
+    assert measure.met(row(now)) is reached
+    assert measure.met(row(now, judged=False)) is None
+
+
 def test_a_part_that_fails_writes_nothing(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(run.results, "FOLDER", tmp_path)
     monkeypatch.setattr(run, "PARTS", {"good": None, "bad": None})
-    row = measure.limit("g", "w", 1.0, "s", 2.0)
+    row = measure.quantity("g", "w", 1.0, "s", 2.0)
     monkeypatch.setattr(run, "run", lambda part: [row] if part == "good" else None)
     monkeypatch.setattr(sys, "argv", ["run.py"])
     with pytest.raises(SystemExit, match="failed: bad"):

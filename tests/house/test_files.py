@@ -43,9 +43,3 @@ def test_modes_stay_as_they_are_or_are_a_new_files(tmp_path):
     path.chmod(0o600)
     write_whole(path, "y")
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
-
-
-def test_paths_that_name_no_file(tmp_path):
-    for path, error in ((3, TypeError), (None, TypeError), (tmp_path, ValueError)):
-        with pytest.raises(error, match="path must"):
-            write_whole(path, "x")

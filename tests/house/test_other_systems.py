@@ -19,7 +19,7 @@ TEXTS = {
     for folder in FOLDERS
 }
 HERE = {
-    path.stem
+    path.parent.name if path.stem == "__init__" else path.stem
     for folder in ("tests", "benchmarks", "book/_ext")
     for path in TEXTS[folder]
     if path.parent.name != "instead"  # what a page that runs has in place of others' packages

@@ -92,8 +92,8 @@ def serve(folder: Path):
 def coloured(page, scheme: str) -> None:
     """Show the page in the colours of "light" or "dark"."""
     if FIREFOX:  # as the theme's own switch does
-        told = "(s) => Object.assign(document.documentElement.dataset, {theme: s, mode: s})"
-        page.evaluate(told, scheme)
+        switch = "(s) => Object.assign(document.documentElement.dataset, {theme: s, mode: s})"
+        page.evaluate(switch, scheme)
     else:
         page.emulate_media(color_scheme=scheme)
 

@@ -36,8 +36,8 @@ def pinned() -> dict[str, str]:
 def versions(python: str) -> dict[str, str]:
     """Versions of the pinned packages in another Python."""
     asked = "import sys; from importlib.metadata import version; print(*map(version, sys.argv[1:]))"
-    told = subprocess.check_output([python, "-c", asked, *pinned()], text=True).split()
-    return {name: found.partition("+")[0] for name, found in zip(pinned(), told, strict=True)}
+    answer = subprocess.check_output([python, "-c", asked, *pinned()], text=True).split()
+    return {name: version.partition("+")[0] for name, version in zip(pinned(), answer, strict=True)}
 
 
 class Kernel(KernelManager):
@@ -60,9 +60,9 @@ def faults(python: str, name: str, text: str) -> tuple[list[str], int]:
         client = NotebookClient(notebook, timeout=600, km=manager, allow_errors=True,
                                 resources={"metadata": {"path": folder}})  # fmt: skip
         client.execute(env={**os.environ, "DDLIB_SOURCE": ROOT.as_uri()})
-    outputs = [one for cell in notebook.cells for one in cell.get("outputs", ())]
+    outputs = [output for cell in notebook.cells for output in cell.get("outputs", ())]
     wrong = [f"{o.ename}: {o.evalue[:300]}" for o in outputs if o.output_type == "error"]
-    shown = sum(VIEW in one.get("data", {}) for one in outputs)
+    shown = sum(VIEW in output.get("data", {}) for output in outputs)
     page = HTML / "book" / f"{name}.html"
     if STATE in page.read_text(encoding="utf-8") and not shown:
         wrong.append("no widget is shown")
@@ -90,9 +90,9 @@ def main(python: str, names: list[str]) -> int:
             f"{name}: {time.monotonic() - started:.0f} s, {shown} widgets, {wrong or 'fine'}"
         )
         bad |= {name: wrong} if wrong else {}
-    kept = versions(python) == pinned()
-    print(f"==> {len(bad)} with faults; Colab's versions {'kept' if kept else 'CHANGED'}")
-    return int(bool(bad) or not kept)
+    same = versions(python) == pinned()
+    print(f"==> {len(bad)} with faults; Colab's versions {'kept' if same else 'CHANGED'}")
+    return int(bool(bad) or not same)
 
 
 if __name__ == "__main__":

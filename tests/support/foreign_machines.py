@@ -103,8 +103,8 @@ def reproduce(name: str, jobs: int) -> list[str]:
         names = ("report/test_results", "chapters/test_ledger", "book/test_prose")
         files = [f"tests/{name}.py" for name in names]
         command = [sys.executable, "-m", "pytest", "-q", "-n", str(jobs), *files]
-        told = subprocess.run(command, env=env, cwd=copy).returncode
-        return [f"{name}: results"] * bool(told) + check(name, jobs, copy)
+        code = subprocess.run(command, env=env, cwd=copy).returncode
+        return [f"{name}: results"] * bool(code) + check(name, jobs, copy)
 
 
 def main(arguments=None) -> int:

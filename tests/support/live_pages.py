@@ -16,8 +16,10 @@ from book_pages import ROOT
 from open_cells import lesson
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
-import live
+from live import cells, packages, pages
 
+KEPT = ROOT / "_build" / "pyodide" / packages.VERSION
+"""Where packages are kept that once were taken."""
 MIRROR = os.environ.get("DDLIB_LIVE_MIRROR", "")
 POLICY = f"{chromium.POLICY}; script-src 'self' 'unsafe-inline' blob: 'wasm-unsafe-eval'"
 IDLE = "html[data-live=idle]"
@@ -38,7 +40,7 @@ def runs_through(tab, site: str, page: str) -> None:
     tab.get_by_role("button", name="Run this page").click()
     tab.locator(IDLE).wait_for(timeout=900_000)
     assert all(times := tab.locator(".live-time").all_inner_texts())
-    assert len(times) == len(live.live_cells(lesson(page)))
+    assert len(times) == len(cells.live_cells(lesson(page)))
     assert not tab.locator(".live-error, .live-warning, .live-note:has(a)").all_inner_texts()
 
 
@@ -52,18 +54,18 @@ BESIDE = """window.Worker = class {
 """In place of the worker with Pyodide: what the test makes of a message."""
 
 
-def set_up(tab, cells: Iterable[dict], name: str = "a.html") -> str:
+def set_up(tab, given: Iterable[dict], name: str = "a.html") -> str:
     """Have a tab find a page with such cells and nothing else; its address."""
-    cells = [{"kind": "open", "needs": "", "names": {}, **cell} for cell in cells]
-    data = json.dumps({"cells": cells, "data": [], "megabytes": [1, 1], "notebook": ""})
+    given = [{"kind": "open", "needs": "", "names": {}, **cell} for cell in given]
+    data = json.dumps({"cells": given, "data": [], "megabytes": [1, 1], "notebook": ""})
     field = '<div class="cell" data-live="{id}"><div class="cell_input"></div></div>'
-    shown = "".join(field.format(**cell) for cell in cells)
+    shown = "".join(field.format(**cell) for cell in given)
     scripts = "".join(f'<script src="{script}.js"></script>' for script in ("follow", "live"))
     text = f"<main><section>{shown}</section></main>"
     text += f'<script type="application/json" id="live-page">{data}</script>{scripts}'
 
     def answer(route):
-        path = live.PAGE / route.request.url.rpartition("/")[2]
+        path = packages.PAGE / route.request.url.rpartition("/")[2]
         if path.suffix == ".js":
             code = path.read_text("utf-8")
             return route.fulfill(body=code, content_type="text/javascript; charset=utf-8")
@@ -75,17 +77,16 @@ def set_up(tab, cells: Iterable[dict], name: str = "a.html") -> str:
 
 
 @contextmanager
-def served(folder: Path, pages: Iterable[str]) -> Iterator[str]:
+def served(folder: Path, names: Iterable[str]) -> Iterator[str]:
     """The address of such pages on a server of their own; skips where no mirror is named."""
     if not MIRROR:
         pytest.skip("set DDLIB_LIVE_MIRROR to a folder or an address with Pyodide's packages")
     (folder / "html" / "book").mkdir(parents=True)
-    for page in pages:
-        (folder / "html" / f"{page}.html").write_text(plain(page), encoding="utf-8")
+    for name in names:
+        (folder / "html" / f"{name}.html").write_text(plain(name), encoding="utf-8")
     for name in ("index.html", "favicon.ico"):
         (folder / "html" / name).touch()
-    kept = live.BUILD / "pyodide" / live.VERSION
-    live.write(ROOT, folder / "html", MIRROR, kept, folder / "out")
+    pages.write(ROOT, folder / "html", MIRROR, KEPT, folder / "out")
     with pytest.MonkeyPatch.context() as patch, chromium.serve(folder / "out") as address:
         patch.setattr(chromium, "POLICY", POLICY)
         yield address

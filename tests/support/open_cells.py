@@ -47,8 +47,8 @@ def lesson(page: str):
 def imports(page: str) -> set[str]:
     """Packages that the open cells import."""
     nodes = [n for cell in visible(lesson(page)) for n in ast.walk(ast.parse(cell.source))]
-    found = {n.module.partition(".")[0] for n in nodes if isinstance(n, ast.ImportFrom)}
-    return found | {
+    packages = {n.module.partition(".")[0] for n in nodes if isinstance(n, ast.ImportFrom)}
+    return packages | {
         name.name.partition(".")[0] for n in nodes if isinstance(n, ast.Import) for name in n.names
     }
 

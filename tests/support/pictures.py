@@ -22,17 +22,17 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 def drawn(make: Callable[[], Illustration]) -> tuple[Illustration, Figure]:
     """An illustration, made without a warning, and the matplotlib figure behind it."""
-    kept = []
+    figures = []
 
     class Kept(Figure):
         def __init__(self, *args, **options):
             super().__init__(*args, **options)
-            kept.append(self)
+            figures.append(self)
 
     with mock.patch.object(style, "Figure", Kept), warnings.catch_warnings():
         warnings.simplefilter("error")
         picture = make()
-    return picture, kept[-1]
+    return picture, figures[-1]
 
 
 def check_sound(picture: Illustration) -> None:
@@ -49,6 +49,31 @@ def check_sound(picture: Illustration) -> None:
     assert len(own) == len(set(own)) and targets == {f"#{name}" for name in own}
 
 
+def check(picture: Illustration, figure: Figure, shows=(), log: str | None = "", upon=None) -> None:
+    """It is sound, and its axes show what they were given.
+
+    `shows` has for each of the first axes the points ``(x, y)`` of lines and dots, and bars from
+    corner to corner; `log` the sides that are logarithmic in these axes (None: they differ). What
+    is black or white lies on a colour, or has an edge in the page's ink: it is painted `upon`.
+    """
+    check_sound(picture)
+    assert black_or_white(picture) <= {upon}
+    assert len(picture.svg) < 400_000
+    for axis, expected in zip(figure.axes, shows):
+        parts = shapes(axis)
+        for points in map(np.asarray, expected):
+            same = [part for part in parts if part.shape == points.shape]
+            assert any(np.allclose(part, points, equal_nan=True) for part in same), points
+    for axis in figure.axes[: len(shows) or 1] if log is not None else ():
+        scales = {"x": axis.get_xscale(), "y": axis.get_yscale()}
+        assert {side for side, scale in scales.items() if scale == "log"} == set(log)
+
+
+def black_or_white(picture: Illustration) -> set[str]:
+    """What cannot be seen on a dark or on a light page."""
+    return set(re.findall(r"(?:fill|stroke): (#000000|#ffffff|black|white)", picture.svg))
+
+
 def ids(svg: str) -> list[str]:
     return [e.attrib["id"] for e in ET.fromstring(svg).iter() if "id" in e.attrib]
 
@@ -56,11 +81,6 @@ def ids(svg: str) -> list[str]:
 def size(svg: str) -> list[float]:
     """Width and height in points."""
     return [float(x) for x in ET.fromstring(svg).attrib["viewBox"].split()[2:]]
-
-
-def black_or_white(picture: Illustration) -> set[str]:
-    """What cannot be seen on a dark or on a light page."""
-    return set(re.findall(r"(?:fill|stroke): (#000000|#ffffff|black|white)", picture.svg))
 
 
 def curves(figure: Figure, colour: str) -> list[np.ndarray]:

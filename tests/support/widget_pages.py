@@ -137,8 +137,8 @@ def copied(page, name="Code") -> str:
 def code_of(chapter: str, name: str) -> str:
     """The text that a cell of a page, or its lesson's module, keeps under a name."""
     module = module_of(chapter)
-    kept = [module.read_text(encoding="utf-8")] if module else []
-    for source in code_cells(ROOT / "book" / f"{chapter}.ipynb") + kept:
+    sources = [module.read_text(encoding="utf-8")] if module else []
+    for source in code_cells(ROOT / "book" / f"{chapter}.ipynb") + sources:
         for line in ast.parse(source).body if f"{name} = " in source else ():
             if isinstance(line, ast.Assign) and line.targets[0].id == name:
                 return ast.literal_eval(line.value)
@@ -213,6 +213,10 @@ def assert_curves(page, known, small=1e-6):
             np.array(curves[name], float), np.ravel(values), rtol=0, atol=allowed, err_msg=name
         )
     return curves
+
+
+SET = "(values) => document.querySelector('.ddlib-curves').view.set(values)"
+"""Sets parameters, all in one."""
 
 
 def shown_values(page) -> list[float]:

@@ -28,6 +28,7 @@ class Between:
     high: float | Sequence[float] = math.inf
 
     def __call__(self, mine) -> bool:
+        """Whether an answer lies there."""
         mine = np.reshape(mine, np.shape(self.low))
         return bool(np.all((self.low <= mine) & (mine <= self.high)))
 

@@ -1,4 +1,4 @@
-// Shows FilterBuilder (engine/builder.py): a window of stems that the reader draws, its output over the
+// Shows FilterBuilder (builder.py): a window of stems that the reader draws, its output over the
 // truth, its gain.
 
 import { chart } from "ddlib/charts.js";
@@ -29,7 +29,7 @@ function fittedTo(truth, f, seen) {
   const count = truth.length;
   const y = outputOf(f, seen, count);
   const mean = truth.reduce((sum, a) => sum + a, 0) / count;
-  let [power, common, spread, left] = [0, 0, 0, 0];
+  let [power, common, spread, missed] = [0, 0, 0, 0];
   for (let t = 0; t < count; t++) {
     power += y[t] * y[t];
     common += y[t] * truth[t];
@@ -38,9 +38,9 @@ function fittedTo(truth, f, seen) {
   const output = y.map((value) => mean + factor * value);
   for (let t = 0; t < count; t++) {
     spread += (truth[t] - mean) ** 2;
-    left += (truth[t] - output[t]) ** 2;
+    missed += (truth[t] - output[t]) ** 2;
   }
-  return { output, factor, error: Math.sqrt(left / spread) };
+  return { output, factor, error: Math.sqrt(missed / spread) };
 }
 
 function gainOf(f, frequency, period) {
@@ -168,10 +168,6 @@ function build({ model, el }) {
   const spec = model.get("spec");
   const { width, levels: most, period } = spec;
   const values = numbersOf(model.get("motion"), "Float64");
-  const count = spec.samples - width + 1;
-  if (values.length !== spec.samples + count) {
-    throw new Error(`${8 * values.length} bytes of motion in place of ${8 * (spec.samples + count)}`);
-  }
   const [q, truth] = [values.subarray(0, spec.samples), values.subarray(spec.samples)];
   const seen = spec.zeros.map((zero) => q.map((x) => encoderReading(spec.step, x + zero) - zero));
   const scores = (f) => {
@@ -293,8 +289,8 @@ function build({ model, el }) {
     drawn = spec.panels.map((panel) =>
       chart(view, { ...panel, curves: compared ? panel.curves : panel.curves.slice(0, 2) }),
     );
-    drawn.forEach((one, k) => places[k].replaceChildren(one.el));
-    drawn.forEach((one) => one.resize());
+    drawn.forEach((panel, k) => places[k].replaceChildren(panel.el));
+    drawn.forEach((panel) => panel.resize());
   }
   const plain = (x) => x.toFixed(x < 0.0995 ? 3 : 2);
   const range = (list) => `${plain(medianOf(list))} (${plain(Math.min(...list))} to ${plain(Math.max(...list))})`;
@@ -330,7 +326,7 @@ function build({ model, el }) {
     const others = `With ${own.others.length} other zeros of the encoder the error is ${range(own.others)}.`;
     write(elsewhere, `${others}${so}`);
     fill.style.width = `${short((100 * Math.log(own.error)) / Math.log(least))}%`;
-    starts.forEach((one, k) => one.setAttribute("aria-pressed", spec.starts[k][0] === start));
+    starts.forEach((button, k) => button.setAttribute("aria-pressed", spec.starts[k][0] === start));
     both.box.checked = mirror;
     zero.box.checked = level;
     compare.disabled = !tried;
@@ -349,9 +345,9 @@ function build({ model, el }) {
       curves[`${key} output`] = theirs[k].output;
       curves[`${key} gain`] = theirs[k].gain;
     });
-    drawn.forEach((one) => {
-      one.redraw(curves);
-      one.describe(curves);
+    drawn.forEach((panel) => {
+      panel.redraw(curves);
+      panel.describe(curves);
     });
   }
   function tabulate(own) {
@@ -387,7 +383,7 @@ function build({ model, el }) {
   const size = new ResizeObserver(() => {
     const space = Math.floor(stage.svg.parentElement.clientWidth);
     stage.resize(Math.max(200, space), el.clientWidth < 560 ? 220 : 300);
-    drawn.forEach((one) => one.resize());
+    drawn.forEach((panel) => panel.resize());
     redraw();
   });
   size.observe(el);

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
-from ddlib._check import instance, shaped
 from ddlib.analysis import frequency_response, savitzky_golay
 from ddlib.learning import sliding_windows
 from ddlib.metrics import rmss
@@ -66,7 +65,6 @@ def windows(zero: float = 0.0, setup: Setup = JOINT_DAMPING) -> np.ndarray:
 
 def _fitted(f, zero: float = 0.0, setup: Setup = JOINT_DAMPING) -> np.ndarray:
     """Output of a filter (rad/s^2) with the factor and the constant that fit best, shape (300,)."""
-    f = shaped("f", f, (_WIDTH,))
     output, truth = windows(zero, setup) @ f, readings(setup)[1]
     output = output - output.mean()
     power = output @ output
@@ -126,8 +124,7 @@ class FilterBuilder(PageWidget):
     motion.tag(sync=True)
 
     def __init__(self, unit, setup: Setup = JOINT_DAMPING):
-        unit = shaped("unit", unit, (_WIDTH,))
-        instance("setup", setup, Setup)
+        unit = np.asarray(unit, float)
         q, truth, step = readings(setup)
         time = np.arange(truth.size) * LOG_STEP
         most = 1.25 * np.abs(truth).max()

@@ -65,8 +65,8 @@ function figureOf(loop, { model, masses, known, feedback, friction, jump }) {
 computes((view) => {
   const setting = Object.fromEntries(view.spec.parameters.map((p) => [p.name, view.get(p.name)]));
   const key = JSON.stringify(setting);
-  if (view.key !== key) Object.assign(view, { key, found: figureOf(view.model.get("loop"), setting) });
-  return view.found.curves;
+  if (view.key !== key) Object.assign(view, { key, figure: figureOf(view.model.get("loop"), setting) });
+  return view.figure.curves;
 });
 
 // Figure 2-1, whose boxes and arrows say what is switched.
@@ -83,8 +83,7 @@ extras.push((view) => {
   const sum = (x, y) => make("circle", { class: "sum", cx: x, cy: y, r: 9 });
   const ahead = text(282, 34, "", "amount");
   const back = text(274, 108, "", "amount");
-  const model = text(190, 45, "", "");
-  const said = text(190, 60, "", "small");
+  const knows = text(190, 60, "", "small");
   const svg = make("svg", { class: "figure", role: "img", viewBox: "0 16 484 154" });
   const boxes = [
     box("model", 190, 45),
@@ -92,7 +91,7 @@ extras.push((view) => {
     box("plant", 404, 120, ""),
     box("", 52, 82, "reference", "trajectory"),
   ];
-  boxes[0].append(model, said);
+  boxes[0].append(text(190, 43, "inverse arm"), knows);
   const rubs = text(404, 134, "", "small");
   boxes[2].append(text(404, 118, "arm"), rubs);
   svg.append(
@@ -111,14 +110,12 @@ extras.push((view) => {
 
   const follow = () => {
     const on = (name) => view.get(name);
-    const { torques } = view.found;
+    const { torques } = view.figure;
     const amount = (x) => `${x.toFixed(1)} N m`;
     svg.classList.toggle("no-model", !on("model"));
     svg.classList.toggle("no-feedback", !on("feedback"));
-    write(model, "inverse arm");
     const parts = [`masses ${Math.round(on("masses"))} %`, ...(on("known") ? ["friction"] : [])];
-    write(said, on("model") ? parts.join(", ") : "off");
-    model.setAttribute("y", 43);
+    write(knows, on("model") ? parts.join(", ") : "off");
     write(rubs, on("friction") ? "with friction" : "rigid");
     write(ahead, on("model") ? amount(torques.ahead) : "");
     write(back, on("feedback") ? amount(torques.back) : "");

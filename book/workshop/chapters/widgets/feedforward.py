@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 import numpy as np
 import traitlets as t
 
-from ddlib._check import instance
 from ddlib.control import Feedforward, proportional
-from ddlib.dynamics import Arm
 from ddlib.effects import CoulombFriction, Effects, ViscousFriction
 from ddlib.figures import JOINTS
 from ddlib.setups import (
@@ -19,7 +17,7 @@ from ddlib.setups import (
     JOINT_DAMPING_KP as KP,
     JOINT_DAMPING_VISCOUS,
 )
-from ddlib.simulation import CONTROL_STEP, LOG_STEP, follow
+from ddlib.simulation import CONTROL_STEP, LOG_STEP, Recording, follow
 from ddlib.trajectories import (
     APPENDIX_I,
     MOTION_SECONDS,
@@ -36,6 +34,7 @@ from ddlib.widgets.table import Live
 
 _HERE = Path(__file__).parent
 
+_ARM = JOINT_DAMPING.arm
 _EXTENTS = APPENDIX_I[0]  # degrees: 45 and 45
 _FRICTION = Effects(
     friction=(ViscousFriction(JOINT_DAMPING_VISCOUS), CoulombFriction(JOINT_DAMPING_COULOMB))
@@ -61,13 +60,6 @@ class FeedforwardSwitches(CurveWidget):
     The arm goes out and back as far as trajectory 1, from rest to rest or with the jump of velocity
     of the report's motions, under the springs of `ddlib.setups.JOINT_DAMPING`; sensors are exact.
     The page computes every setting by the live engine.
-
-    Parameters
-    ----------
-    arm : Arm
-        The arm that moves.
-    **options
-        Passed on to `CurveWidget`.
     """
 
     _esm = bundle(_HERE / "feedforward.js")
@@ -75,11 +67,9 @@ class FeedforwardSwitches(CurveWidget):
 
     loop = t.Dict(help="plant, gains and references", read_only=True).tag(sync=True)
 
-    def __init__(self, arm: Arm = JOINT_DAMPING.arm, **options):
-        instance("arm", arm, Arm)
-        self._arm = arm
+    def __init__(self):
         super().__init__(
-            lambda **setting: _kept(arm, **setting),
+            _switched,
             [
                 Choice("model", "Model of the arm", _SWITCH, False, "switch"),
                 Parameter("masses", "Masses of the model", 0, 200, 100, "% of the arm's"),
@@ -116,10 +106,9 @@ class FeedforwardSwitches(CurveWidget):
             ],
             code=_CODE,
             note="A thick arrow carries much of the shoulder's torque (root mean square).",
-            **options,
         )
         loop = {
-            "plant": plant(arm, _FRICTION),
+            "plant": plant(_ARM, _FRICTION),
             "gains": gains(proportional(KP)),
             "extents": np.deg2rad(_EXTENTS).tolist(),
             "motion": MOTION_SECONDS,
@@ -135,28 +124,32 @@ def _reference(jump: bool) -> Trajectory:
     return Trajectory(*shape(_EXTENTS, _T))
 
 
+def _driven(ahead, gain, friction: bool, reference: Trajectory) -> Recording:
+    """The arm under the torques of a table, and springs."""
+    law = Feedforward(lambda *motion: ahead, proportional(gain))
+    effects = _FRICTION if friction else Effects()
+    return follow(_ARM, law, reference, _T, effects=effects, log_every=_EVERY)
+
+
+@cache
+def _error_alone(friction: bool, jump: bool) -> np.ndarray:
+    """Error with feedback alone, degrees."""
+    reference = _reference(jump)
+    return np.rad2deg(_driven(np.zeros_like(reference.q), KP, friction, reference).tracking_error)
+
+
 @lru_cache(maxsize=32)
-def _kept(arm: Arm, **setting) -> dict:
-    return switched(arm, **setting)
-
-
-def switched(arm: Arm, model, masses, known, feedback, friction, jump) -> dict:
+def _switched(model, masses, known, feedback, friction, jump) -> dict:
     """Curves and numbers of one setting, by ddlib's simulator: degrees, N m."""
     reference = _reference(jump)
     ahead = np.zeros_like(reference.q)
     if model:
         q, qd, qdd = reference
-        ahead = (masses / 100) * arm.inverse_dynamics(q, qd, qdd)
+        ahead = (masses / 100) * _ARM.inverse_dynamics(q, qd, qdd)
         if known:
             ahead = ahead + _FRICTION.friction_torque(qd)
-    effects = _FRICTION if friction else Effects()
-
-    def drive(torque, gain):
-        law = Feedforward(lambda *motion: torque, proportional(gain))
-        return follow(arm, law, reference, _T, effects=effects, log_every=_EVERY)
-
-    run = drive(ahead, KP if feedback else (0.0, 0.0))
-    alone = np.rad2deg(drive(0 * ahead, KP).tracking_error)
+    run = _driven(ahead, KP if feedback else (0.0, 0.0), friction, reference)
+    alone = _error_alone(friction, jump)
     error, ahead = np.rad2deg(run.tracking_error), ahead[::_EVERY]
     both = [np.sqrt((x**2).mean()) for x in (error, alone)]
     rows = {"share": 100 * both[0] / both[1]}

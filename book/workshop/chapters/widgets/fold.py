@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
-from ddlib._check import integer, number, shaped, told
 from ddlib.analysis import decompose
 from ddlib.widgets.base import CurveWidget, Panel
 from ddlib.widgets.hinton import CENTRE
@@ -33,8 +32,6 @@ class FilterFold(CurveWidget):
         odd width.
     step : float
         Sampling period of the rows, s; `ddlib.simulation.LOG_STEP` of the book's recordings.
-    **options
-        Passed on to `CurveWidget`.
     """
 
     _esm = bundle(_HERE / "fold.js")
@@ -42,18 +39,11 @@ class FilterFold(CurveWidget):
     folding = t.Dict(help="time of the samples, parts and axes of rows", read_only=True)
     folding.tag(sync=True)
 
-    def __init__(self, rows: Mapping[str, np.ndarray], step: float, **options):
-        number("step", step, 0.0, open_low=True)
-        if not isinstance(rows, Mapping) or len(rows) < 2:
-            raise TypeError(f"rows must map two labels or more to weights, got {told(rows)}")
-        some = shaped("rows", next(iter(rows.values())), "(width,)")
-        integer("samples of rows", some.size, 3)
-        self._rows = {str(label): shaped(f"rows[{label!r}]", f, some.shape)
-                      for label, f in rows.items()}  # fmt: skip
-        half = some.size // 2
+    def __init__(self, rows: Mapping[str, np.ndarray], step: float):
+        self._parts = {label: self._taken_apart(f) for label, f in rows.items()}
+        labels = list(rows)
+        half = len(rows[labels[0]]) // 2
         self._time = time = np.arange(-half, half + 1) * step
-        self._parts = {label: self._taken_apart(f) for label, f in self._rows.items()}
-        labels = list(self._rows)
         whole = {"y_range": ("least weight", "most weight")}
         names, ends = [*_PARTS, "all"], ("least answer", "most answer")
         ms = 1e3 * time
@@ -95,7 +85,6 @@ class FilterFold(CurveWidget):
             live=Live(examples=[dict(zip(("row", "fold", *motion), x)) for x in product(
                 labels, (0, 100), *((-x, x) for x in (_ANGLE, _SPEED, _ACCELERATION))
             )]),
-            **options,
         )  # fmt: skip
         folding = {
             label: {"parts": parts.tolist(), "ends": self._ends(parts)}

@@ -82,12 +82,12 @@ export function insideOf(world, spec, id) {
   );
 
   // What line and parabola measure
-  const told = { colour: "c1", width: 2, dash: [6, 3] };
+  const measured = { colour: "c1", width: 2, dash: [6, 3] };
   const charts = [
     ["velocity", "rad/s", "line", 1, (s) => s.v[chosen.joint], (s) => s.rates?.[chosen.joint]],
     ["acceleration", "rad/s²", "parabola", 8, (s) => s.a[chosen.joint], (s) => s.bends?.[chosen.joint]],
   ].map(([what, unit, shape, high, truth, of]) => {
-    const lines = [{ colour: "ink", width: 2.5, dash: [], of: truth }, { ...told, of }];
+    const lines = [{ colour: "ink", width: 2.5, dash: [], of: truth }, { ...measured, of }];
     const chart = timeChart({ height: 110, label: `${what} over three seconds`, low: -high, high, lines, bottom: true });
     const title = make("div", { class: "title" });
     const legend = make("div", { class: "legend" });
@@ -102,7 +102,7 @@ export function insideOf(world, spec, id) {
     }, { "aria-pressed": "false" }),
   );
   const slider = make("input", { id: `${id}-fold`, type: "range", min: 0, max: 100, step: 1 });
-  const said = make("output", { for: slider.id });
+  const amount = make("output", { for: slider.id });
   slider.addEventListener("input", () => {
     cancelAnimationFrame(frame);
     set(slider.value / 100);
@@ -116,10 +116,10 @@ export function insideOf(world, spec, id) {
     "div",
     { class: "inside", id: `${id}-inside` },
     equation,
-    make("div", { class: "choices" }, ...choices, make("div", { class: "slider" }, label, said, slider)),
+    make("div", { class: "choices" }, ...choices, make("div", { class: "slider" }, label, amount, slider)),
     words,
     hint,
-    make("div", { class: "measured" }, ...charts.map((one) => one.el)),
+    make("div", { class: "measured" }, ...charts.map(({ el }) => el)),
   );
 
   function choose(unit) {
@@ -151,8 +151,8 @@ export function insideOf(world, spec, id) {
   function set(part) {
     fold = part;
     slider.value = Math.round(100 * part);
-    write(said, `${slider.value} %`);
-    slider.setAttribute("aria-valuetext", said.textContent);
+    write(amount, `${slider.value} %`);
+    slider.setAttribute("aria-valuetext", amount.textContent);
     write(kinds[0].title, part === 1 ? "what is left" : "one row");
     world.changed?.();
   }
@@ -185,7 +185,7 @@ export function insideOf(world, spec, id) {
     unfold();
   };
   api.resize = () => {
-    if (api.open) for (const place of [...kinds.map((one) => one.stems), ...charts.map((one) => one.chart)]) place.resize();
+    if (api.open) for (const place of [...kinds.map(({ stems }) => stems), ...charts.map(({ chart }) => chart)]) place.resize();
   };
   api.draw = (samples, phase, colours) => {
     if (!api.open) return;

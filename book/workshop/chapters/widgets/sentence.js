@@ -1,8 +1,9 @@
-// Shows a LiveSentence (engine/sentence.py): numbers to drag or to step, and an end that is computed.
+// Shows a LiveSentence (sentence.py): numbers to drag or to step, and an end that is computed.
 
 import { buttonOf, dress, make, onKeys, put, write } from "ddlib/elements.js";
 import { filled, frameOf, python } from "ddlib/frame.js";
 import { growthOf } from "ddlib/loops.js";
+import { format } from "ddlib/numbers.js";
 import { armTorque } from "ddlib/physics.js";
 
 // What each kind of sentence computes: texts by the names of its results.
@@ -28,10 +29,7 @@ const PIXELS = 6; // of a drag for a step
 // Sign, number and unit: on one line.
 const together = (...parts) => make("span", { class: "together" }, ...parts);
 
-function signed(value, digits) {
-  const text = value.toFixed(digits);
-  return Number(text) ? text.replace("-", "−") : text.replace("-", "");
-}
+const signed = (value, digits) => format(value, 0, 1, "", digits);
 
 function render({ model, el }) {
   const spec = model.get("spec");

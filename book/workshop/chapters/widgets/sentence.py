@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
-from ddlib._check import one_of
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import IDEAL
 from ddlib.figures import illustrate
@@ -53,19 +52,15 @@ class _LiveSentence(PageWidget):
     ):
         self._parameters = {p.name: p for p in parameters}
         numbers = [{**p.description(), "step": steps[p.name]} for p in parameters]
-        told = {"key": key_of(type(self)), "code": code, "parts": list(parts), "numbers": numbers}
-        self.set_trait("spec", {**told, **data})
+        spec = {"key": key_of(type(self)), "code": code, "parts": list(parts), "numbers": numbers}
+        self.set_trait("spec", {**spec, **data})
         super().__init__(values={p.name: p.value for p in parameters})
         text = self.text()
         self._keep(still=_picture(text), still_alt=text)
 
     @t.validate("values")
-    def _checked(self, proposal):
-        given = dict(proposal["value"])
-        for name, value in given.items():
-            one_of("number", name, tuple(self._parameters))
-            given[name] = self._parameters[name].check(value)
-        return {**{name: p.value for name, p in self._parameters.items()}, **given}
+    def _whole(self, proposal):
+        return {**{name: p.value for name, p in self._parameters.items()}, **proposal["value"]}
 
     def results(self, **values) -> dict[str, str]:
         """The texts that end the sentence, by ddlib; what the page must show."""

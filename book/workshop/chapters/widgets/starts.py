@@ -24,11 +24,9 @@ class UnitFromFiveStarts(CurveWidget):
     ----------
     networks : mapping
         Size of the start -> `Weights` of one network before training, and of the same one after.
-    **options
-        Passed on to `CurveWidget`.
     """
 
-    def __init__(self, networks: Mapping[float, tuple[Weights, Weights]], **options):
+    def __init__(self, networks: Mapping[float, tuple[Weights, Weights]]):
         self._networks = dict(networks)
         sizes = sorted(self._networks)
         width = self._networks[sizes[0]][0].hidden_weights.shape[-1]
@@ -52,15 +50,12 @@ class UnitFromFiveStarts(CurveWidget):
                 ),
                 share_panel("Share of the energy", "responds to", _SHARES),
             ],
-            **{
-                "alt": "One row of weights before and after training, from a start of one size. "
-                "Its even and odd part. The derivatives that it responds to.",
-                "title": "One unit, five starts",
-                "note": "All starts use the same random numbers, made larger or smaller. The "
-                "recording and the number of epochs stay the same. The last bar is the share that "
-                "follows neither the constant nor one of the three derivatives.",
-                **options,
-            },
+            alt="One row of weights before and after training, from a start of one size. "
+            "Its even and odd part. The derivatives that it responds to.",
+            title="One unit, five starts",
+            note="All starts use the same random numbers, made larger or smaller. The "
+            "recording and the number of epochs stay the same. The last bar is the share that "
+            "follows neither the constant nor one of the three derivatives.",
         )  # fmt: skip
 
     def _curves(self, size, unit, joint) -> dict:

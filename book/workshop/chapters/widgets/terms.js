@@ -49,9 +49,9 @@ computes((view) => {
   const before = along(motionOf(view, false));
   const curves = {};
   NAMES.forEach((joint, j) => {
-    for (const name of terms) curves[`${joint} ${name}`] = all.map((one) => one[name][j]);
-    curves[`${joint} ${BEFORE}`] = before.map((one) => one[SUM][j]);
-    const sum = (a, b) => rmsOf(all.map((one) => one[a][j] + one[b][j]));
+    for (const name of terms) curves[`${joint} ${name}`] = all.map((torque) => torque[name][j]);
+    curves[`${joint} ${BEFORE}`] = before.map((torque) => torque[SUM][j]);
+    const sum = (a, b) => rmsOf(all.map((torque) => torque[a][j] + torque[b][j]));
     curves[`${joint} ratio`] = [(100 * sum("centrifugal", "Coriolis")) / sum("inertial", "coupling")];
   });
   return curves;
@@ -146,15 +146,15 @@ extras.push((view) => {
   const top = () => four.reduce((a, b) => (rms(b) > rms(a) ? b : a));
   const BETS = ["They gain", "The ratio stays", "They fall behind"];
   let shown = null;
-  function told() {
+  function answer() {
     if (!first) return "";
     const best = top();
     const right = first === best ? "Yes" : `Not ${first}`;
-    const one = `${right}: the largest at the elbow is ${best}, ${newtons(rms(best))}. ${WHY[best] ?? ""}`.trim();
-    if (!second) return one;
+    const largestTerm = `${right}: the largest at the elbow is ${best}, ${newtons(rms(best))}. ${WHY[best] ?? ""}`.trim();
+    if (!second) return largestTerm;
     const own = second === BETS[1] ? "Yes" : "No";
-    const two = `${own}, the ratio stays. At double speed every term is four times as large.`;
-    return `${two} Does friction, too? Switch it on.`;
+    const ratio = `${own}, the ratio stays. At double speed every term is four times as large.`;
+    return `${ratio} Does friction, too? Switch it on.`;
   }
   function question() {
     const stage = first ? (second ? 2 : 1) : 0;
@@ -164,7 +164,7 @@ extras.push((view) => {
       "",
     ];
     write(ask, texts[stage]);
-    write(verdict, told());
+    write(verdict, answer());
     if (stage === shown) return;
     shown = stage;
     const choose = [
@@ -180,19 +180,19 @@ extras.push((view) => {
       chart.describe(view.curves);
     }
   }
-  function set(one, two) {
+  function set(term, bet) {
     const held = answers.contains(document.activeElement);
-    [first, second] = [one, two];
+    [first, second] = [term, bet];
     question();
     if (held) (answers.firstChild ?? clock.play).focus({ preventScroll: true });
     view.changed();
   }
   const restore = (text) => {
-    const [one = "", two = ""] = text.split(";");
-    if (![...four, ""].includes(one) || ![...BETS, ""].includes(two)) throw new Error(`no guess ${text}`);
-    set(one, two);
+    const [term = "", bet = ""] = text.split(";");
+    if (![...four, ""].includes(term) || ![...BETS, ""].includes(bet)) throw new Error(`no guess ${text}`);
+    set(term, bet);
   };
-  view.words = () => (first ? [told().slice(0, -1)] : []);
+  view.words = () => (first ? [answer().slice(0, -1)] : []);
 
   const player = make("div", { class: "player" }, clock.play, clock.el);
   view.top.prepend(make("div", { class: "arm-box" }, stage.svg, player));

@@ -7,11 +7,10 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
-from ddlib._check import filled, instance, shaped
 from ddlib.dynamics import with_load
 from ddlib.effects import Effects
 from ddlib.figures import JOINTS
-from ddlib.setups import JOINT_DAMPING, Setup
+from ddlib.setups import JOINT_DAMPING
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, pick_and_place
 from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.engine._plain import plant
@@ -47,15 +46,6 @@ class TorqueTerms(CurveWidget):
 
     The curves have letters until the reader has guessed which term is the elbow's largest. The
     page computes all of it by the live engine. The motion is the reference itself: no controller.
-
-    Parameters
-    ----------
-    setup : Setup
-        Arm and friction; the arm must move in a horizontal plane.
-    extents_deg : array_like, shape (motions, 2)
-        Extents of shoulder and elbow, degrees, two motions or more.
-    **options
-        Passed on to `CurveWidget`.
     """
 
     _esm = bundle(_HERE / "terms.js")
@@ -63,17 +53,12 @@ class TorqueTerms(CurveWidget):
 
     moving = t.Dict(help="arms by load, friction, extents in rad", read_only=True).tag(sync=True)
 
-    def __init__(self, setup: Setup = JOINT_DAMPING, extents_deg=APPENDIX_I, **options):
-        instance("setup", setup, Setup)
-        extents_deg = shaped("extents_deg", extents_deg, "(runs, 2)")
-        filled("extents_deg", extents_deg)
-        if any(setup.arm.gravity_moments):
-            raise ValueError(f"setup must have a horizontal arm, got {setup.arm.gravity_moments}")
-        self._arms = {load: with_load(setup.arm, load) for load in _LOADS}
-        self._effects, self._extents = Effects(friction=setup.effects.friction), extents_deg
+    def __init__(self):
+        self._arms = {load: with_load(JOINT_DAMPING.arm, load) for load in _LOADS}
+        self._effects = Effects(friction=JOINT_DAMPING.effects.friction)
         motions = {
             k: f"{k}: {first:g}°, {second:g}°"
-            for k, (first, second) in enumerate(extents_deg.tolist(), 1)
+            for k, (first, second) in enumerate(APPENDIX_I.tolist(), 1)
         }
         fast, slow = (f"{MOTION_SECONDS / speed:g} s" for speed in (2, 1))
         names = [_SUM, *_TERMS, _FRICTION]
@@ -111,14 +96,14 @@ class TorqueTerms(CurveWidget):
                     {"doubled": True, "friction": True},
                 ]
             ),
-            **{"code": _CODE, **options},
+            code=_CODE,
         )
-        given = plant(setup.arm, self._effects)
+        given = plant(JOINT_DAMPING.arm, self._effects)
         self._keep(
             moving={
                 "arms": {x: plant(arm, Effects())["arm"] for x, arm in self._arms.items()},
                 **{name: given[name] for name in ("viscous", "coulomb", "smoothing", "lengths")},
-                "extents": np.deg2rad(extents_deg).tolist(),
+                "extents": np.deg2rad(APPENDIX_I).tolist(),
                 "seconds": MOTION_SECONDS,
                 "terms": names,
             }
@@ -127,7 +112,7 @@ class TorqueTerms(CurveWidget):
     def _parts(self, motion, load, doubled, friction) -> dict[str, np.ndarray]:
         """The terms and their sum along a motion, each ``(samples, 2)`` in N m."""
         seconds = MOTION_SECONDS / (2 if doubled else 1)
-        state = pick_and_place(self._extents[motion - 1], seconds * _DONE / 100, seconds)
+        state = pick_and_place(APPENDIX_I[motion - 1], seconds * _DONE / 100, seconds)
         parts = self._arms[load].torque_terms(*state)
         parts["Coriolis"] = parts.pop("coriolis")
         rubbing = self._effects.friction_torque(state.qd) if friction else 0 * state.qd

@@ -1,4 +1,4 @@
-// Shows ThrownArm (engine/throw.py): the arm with a handle at its hand, the strip of positions under
+// Shows ThrownArm (throw.py): the arm with a handle at its hand, the strip of positions under
 // the window, true torques and the network's. Everything is computed here.
 
 import { coloursOf } from "ddlib/canvas.js";
@@ -117,7 +117,7 @@ function build({ model, el }) {
   const places = [band, ...torques];
 
   // Words and numbers
-  const said = make("p", { class: "said", role: "status" });
+  const status = make("p", { class: "said", role: "status" });
   const outside = make("p", { class: "outside", "aria-hidden": "true" });
   const errors = make("p", { class: "remark errors" });
   const legend = make("div", { class: "legend" });
@@ -132,7 +132,7 @@ function build({ model, el }) {
     );
   }
   function say(text) {
-    write(said, text);
+    write(status, text);
     tell();
   }
   const named = () => spec.trajectories[world.shown].name;
@@ -143,7 +143,7 @@ function build({ model, el }) {
   let owed = 0; // s of simulated time
   let paused = true;
   let several = false; // trajectories one after the other
-  let told = 0;
+  let reported = 0;
   let colours = coloursOf(el);
 
   function draw() {
@@ -164,8 +164,8 @@ function build({ model, el }) {
       else say("The motion is over.");
     } else if (before !== world.mode) say("Now only friction slows the arm."); // after a toss
     show();
-    if (now - told > 500) {
-      told = now;
+    if (now - reported > 500) {
+      reported = now;
       tell();
     }
     draw();
@@ -304,8 +304,8 @@ function build({ model, el }) {
       pressed.delete(key);
       pull();
     };
-    const left = NUDGE - (performance.now() - since);
-    if (left > 0) setTimeout(letGo, left);
+    const more = NUDGE - (performance.now() - since);
+    if (more > 0) setTimeout(letGo, more);
     else if (since !== undefined) letGo();
   });
   handle.addEventListener("blur", () => {
@@ -334,7 +334,7 @@ function build({ model, el }) {
         torques[1].el,
       ),
     ),
-    make("div", { class: "words" }, said, outside),
+    make("div", { class: "words" }, status, outside),
     inside.el,
     errors,
     hint,
@@ -356,19 +356,19 @@ function build({ model, el }) {
 
   // Once, when it comes into view, the motion goes on; nothing moves while it is out of sight.
   let greeted = calm.matches;
-  let left = false; // while something moved
+  let interrupted = false;
   const sight = new IntersectionObserver(([entry]) => {
     const moving = frame !== 0;
     if (!entry.isIntersecting) {
       cancelAnimationFrame(frame);
       frame = 0;
-      left = moving;
+      interrupted = moving;
     } else if (!greeted) {
       greeted = true;
       if (inside.open) inside.unfold();
       say(`Playing ${named()}.`);
       start();
-    } else if (left) start();
+    } else if (interrupted) start();
   });
   sight.observe(stage.svg);
   el.world = world; // for tests

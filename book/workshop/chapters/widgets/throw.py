@@ -7,12 +7,11 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
-from ddlib._check import instance
 from ddlib.analysis import basis, shares
 from ddlib.figures import COLOURS, DASHES, FAINT, INK, JOINTS, illustrate
 from ddlib.learning import TorqueModel
 from ddlib.paper import TEST_TRAJECTORY
-from ddlib.setups import JOINT_DAMPING, Setup, predict
+from ddlib.setups import JOINT_DAMPING, predict
 from ddlib.simulation import CONTROL_STEP, LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS
 from ddlib.widgets.base import PageWidget
@@ -37,7 +36,7 @@ _HINT = (
 
 
 class ThrownArm(PageWidget):
-    """Throw a simulated arm; a window network tells the torque from positions alone.
+    """Throw the arm with damped joints; a window network tells the torque from positions alone.
 
     Everything is computed in the page by the live engine (``static/engine.js``), with a kernel
     and without.
@@ -46,9 +45,6 @@ class ThrownArm(PageWidget):
     ----------
     model : TorqueModel
         One network, trained on the sampling period of the log.
-    setup : Setup
-        Arm, effects and controller; the engine must have the effects, and the controller must be
-        a `PID`.
     code : str
         What *Code* copies, with ``{motion}`` for the trajectory's place in Appendix I.
     """
@@ -58,24 +54,17 @@ class ThrownArm(PageWidget):
 
     weights = t.Bytes(help="the network's weights as float32", read_only=True).tag(sync=True)
 
-    def __init__(self, model: TorqueModel, setup: Setup = JOINT_DAMPING, *, code: str = ""):
-        instance("model", model, TorqueModel)
-        instance("setup", setup, Setup)
-        layout = network(model)
-        if model.step is not None and abs(model.step / LOG_STEP - 1) > 1e-6:
-            raise ValueError(
-                f"model must have the log's sampling period of {LOG_STEP:g} s, got {model.step:g} s"
-            )
+    def __init__(self, model: TorqueModel, *, code: str = ""):
         order = [TEST_TRAJECTORY, *(k for k in range(1, 7) if k != TEST_TRAJECTORY)]
         span = np.maximum(-model.outputs.low, model.outputs.high)
-        still, alt = _still(model, setup)
+        still, alt = _still(model)
         spec = {
             "title": "Throw the arm: a network predicts its torque",
             "hint": _HINT,
             "code": code,
-            "plant": plant(setup.arm, setup.effects),
-            "gains": gains(setup.controller),
-            "network": layout,
+            "plant": plant(JOINT_DAMPING.arm, JOINT_DAMPING.effects),
+            "gains": gains(JOINT_DAMPING.controller),
+            "network": network(model),
             "step": CONTROL_STEP,
             "every": round(LOG_STEP / CONTROL_STEP),
             "motion": MOTION_SECONDS,
@@ -113,9 +102,9 @@ def _units(model: TorqueModel) -> list[dict]:
     return units
 
 
-def _still(model: TorqueModel, setup: Setup) -> tuple[str, str]:
+def _still(model: TorqueModel) -> tuple[str, str]:
     """A motion with true torques and the network's, a row folded, and what the picture shows."""
-    recording = setup.record(APPENDIX_I[[TEST_TRAJECTORY - 1]])[0]
+    recording = JOINT_DAMPING.record(APPENDIX_I[[TEST_TRAJECTORY - 1]])[0]
     moving = recording.motion
     time, predicted = recording.t[moving], predict(model, recording)
     unit = _units(model)[0]
@@ -124,7 +113,7 @@ def _still(model: TorqueModel, setup: Setup) -> tuple[str, str]:
     parts = along * (along @ row)[:, None]
     part = [f"{100 * share:.0f} %" for share in shares(row)]
     most = 1.1 * np.abs(row).max()
-    hand = setup.arm.forward_kinematics(recording.q_true[moving])
+    hand = JOINT_DAMPING.arm.forward_kinematics(recording.q_true[moving])
 
     def motion(arm, angles, *torques):
         arm.plot(*hand[:, 1].T, color=FAINT, lw=1)

@@ -38,14 +38,14 @@ function tuned(loop, setting) {
 // Runs by their settings, the newest last.
 function memory(loop, most = 4) {
   loop = { ...loop, reference: referenceOf(loop) };
-  const kept = new Map();
+  const runs = new Map();
   return (setting) => {
     const key = JSON.stringify(setting);
-    const found = kept.get(key) ?? tuned(loop, setting);
-    kept.delete(key);
-    kept.set(key, found);
-    if (kept.size > most) kept.delete(kept.keys().next().value);
-    return found;
+    const run = runs.get(key) ?? tuned(loop, setting);
+    runs.delete(key);
+    runs.set(key, run);
+    if (runs.size > most) runs.delete(runs.keys().next().value);
+    return run;
   };
 }
 
@@ -209,14 +209,14 @@ function asking(view, questions, show) {
   let at = 0;
   const question = make("span", { class: "question" });
   const choices = make("div", { class: "choices" });
-  const told = make("p", { class: "told", role: "status" });
+  const outcome = make("p", { class: "told", role: "status" });
   const tryIt = buttonOf("Try it", () => {
     const { right, why, settings, choices: texts } = questions[at];
     const chosen = choices.querySelector("input:checked");
     if (!chosen) return;
     const good = Number(chosen.value) === right;
     show(settings);
-    write(told, `${good ? "You were right." : "It comes out differently."} ${texts[right]} ${why}`);
+    write(outcome, `${good ? "You were right." : "It comes out differently."} ${texts[right]} ${why}`);
     choices.hidden = true; // the answer stands in its place
     next.focus({ preventScroll: true }); // a button that goes out of use would lose it
     tryIt.disabled = true;
@@ -228,7 +228,7 @@ function asking(view, questions, show) {
   function pose() {
     const { text, choices: texts } = questions[at];
     write(question, `… ${text}?`);
-    write(told, "");
+    write(outcome, "");
     choices.hidden = false;
     tryIt.disabled = true;
     choices.replaceChildren(
@@ -243,5 +243,5 @@ function asking(view, questions, show) {
   pose();
   const legend = make("legend", {}, "Predict first. What happens if ", question);
   const buttons = make("div", { class: "buttons" }, tryIt, next);
-  return make("fieldset", { class: "ask" }, legend, choices, told, buttons);
+  return make("fieldset", { class: "ask" }, legend, choices, outcome, buttons);
 }

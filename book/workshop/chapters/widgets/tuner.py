@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 import traitlets as t
 
-from ddlib._check import instance, one_of
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from ddlib.effects import Effects, ViscousFriction
 from ddlib.figures import JOINTS
@@ -50,26 +48,15 @@ run = tuned(
 run["shoulder error"], run["growth"], run["stopped"]"""
 
 
-@dataclass(frozen=True)
-class _Question:
-    """What happens if: asked before it is shown."""
+def _question(text, change, choices, right, why, first=None) -> dict:
+    """What happens if `text`: asked before it is shown.
 
-    text: str  # what is changed
-    change: dict  # parameters that differ from `_START` afterwards
-    choices: tuple[str, ...]  # what might happen
-    right: int  # place of what does happen among them; a test measures it
-    why: str
-    first: dict = field(default_factory=dict)  # parameters that differ from `_START` before
-
-    @property
-    def settings(self) -> tuple[dict, dict]:
-        """All parameters before and after."""
-        return {**_START, **self.first}, {**_START, **self.change}
-
-    def description(self) -> dict:
-        """What the page needs to know."""
-        told = {"text": self.text, "choices": list(self.choices), "right": self.right}
-        return {**told, "why": self.why, "settings": list(self.settings)}
+    `first` and `change` are parameters that differ from `_START` before and afterwards, `right` is
+    the place among the choices of what does happen; a test measures it.
+    """
+    settings = [{**_START, **(first or {})}, {**_START, **change}]
+    return {"text": text, "choices": list(choices), "right": right, "why": why,
+            "settings": settings}  # fmt: skip
 
 
 _KINDS = (
@@ -79,14 +66,14 @@ _KINDS = (
 )
 
 _QUESTIONS = (
-    _Question(
+    _question(
         "you make the springs twelve times as stiff (proportional gain 9000 N m/rad)",
         {"kp": 9000.0},
         ("It swings for a shorter time.", _KINDS[1], _KINDS[2]),
         2,
         "Beyond a limit, a stiffer spring feeds the swing. The page below finds out why.",
     ),
-    _Question(
+    _question(
         "you keep these stiff springs and add a damper of 60 N m s/rad",
         {"kp": 9000.0, "kd": 60.0},
         _KINDS,
@@ -94,7 +81,7 @@ _QUESTIONS = (
         "The damper takes more energy out of each swing than the stiff springs put in.",
         {"kp": 9000.0},
     ),
-    _Question(
+    _question(
         "every torque comes 10 ms late",
         {"late": 5},
         _KINDS,
@@ -102,7 +89,7 @@ _QUESTIONS = (
         "A late spring pushes along the velocity, so it acts as negative friction. Here it is "
         "stronger than the joint's own friction.",
     ),
-    _Question(
+    _question(
         "every torque comes 10 ms late, and you add a damper of 60 N m s/rad",
         {"kd": 60.0, "late": 5},
         _KINDS,
@@ -110,7 +97,7 @@ _QUESTIONS = (
         "The damper leads in phase by more than the delay lags. So some phase margin is left.",
         {"late": 5},
     ),
-    _Question(
+    _question(
         "you add a damper of 100 N m s/rad, and every torque comes 40 ms late",
         {"kd": 100.0, "late": 20},
         _KINDS,
@@ -118,14 +105,14 @@ _QUESTIONS = (
         "With a stronger damper the crossover lies at a higher frequency. There the same delay "
         "costs a larger angle.",
     ),
-    _Question(
+    _question(
         "you add an integral gain of 3000 N m/(rad s)",
         {"ki": 3000.0},
         ("The integral ends the swing.", "The swing goes on as it was.", _KINDS[2]),
         2,
         "An integral adds up past errors. So it pushes late, and a late push feeds the swing.",
     ),
-    _Question(
+    _question(
         "you make a damper of 60 N m s/rad twice as strong",
         {"kd": 120.0},
         (
@@ -137,7 +124,7 @@ _QUESTIONS = (
         "The reference begins with a jump of its velocity, and only the damper reacts to velocity.",
         {"kd": 60.0},
     ),
-    _Question(
+    _question(
         "you add feedforward to a damper of 60 N m s/rad",
         {"kd": 60.0, "feedforward": True},
         (
@@ -162,13 +149,6 @@ class PIDTuner(CurveWidget):
     the live engine. A run is stopped where a joint's error passes 30 degrees. Growth and margins
     are those of the sampled linear loop at the stretched arm, margins with the loop cut open at one
     joint's torque while the other joint's is closed.
-
-    Parameters
-    ----------
-    arm : Arm
-        The arm that moves.
-    **options
-        Passed on to `CurveWidget`.
     """
 
     _esm = bundle(_HERE / "tuner.js")
@@ -177,9 +157,7 @@ class PIDTuner(CurveWidget):
     before = t.Dict(help="the setting before this one, which the ghost has").tag(sync=True)
     loop = t.Dict(help="plant, modes, reference and questions", read_only=True).tag(sync=True)
 
-    def __init__(self, arm: Arm = CMU_DD_ARM_II, **options):
-        instance("arm", arm, Arm)
-        self._arm = arm
+    def __init__(self):
         milliseconds = {n: f"{1e3 * CONTROL_STEP * n:g} ms" for n in _LATE}
         super().__init__(
             self._both,
@@ -214,12 +192,11 @@ class PIDTuner(CurveWidget):
             ],
             code=_CODE,
             note="The sliders set the shoulder's gains. The elbow's follow in a fixed ratio.",
-            **options,
         )
         effects = Effects(friction=(ViscousFriction(_VISCOUS),))
         loop = {
-            "plant": plant(arm, effects),
-            "modes": modes(arm, _VISCOUS),
+            "plant": plant(CMU_DD_ARM_II, effects),
+            "modes": modes(CMU_DD_ARM_II, _VISCOUS),
             "elbow": _ELBOW,
             "extents": np.deg2rad(APPENDIX_I[TEST_TRAJECTORY - 1]).tolist(),
             "motion": MOTION_SECONDS,
@@ -227,28 +204,21 @@ class PIDTuner(CurveWidget):
             "periods": len(_T),
             "every": round(LOG_STEP / CONTROL_STEP),
             "most": np.deg2rad(_MOST_DEG),
-            "questions": [q.description() for q in _QUESTIONS],
+            "questions": list(_QUESTIONS),
         }
         self._keep(before=self.values, loop=loop)
 
-    @t.validate("before")
-    def _checked_before(self, proposal):
-        for name, value in proposal["value"].items():
-            one_of("parameter of before", name, tuple(self._parameters))
-            self._parameters[name].check(value)
-        return proposal["value"]
-
     def _both(self, **setting) -> dict:
         """The curves of a setting, and of the one before."""
-        now = _kept(self._arm, **setting)
-        old = _kept(self._arm, **{**setting, **self.before})
+        now = _remembered(**setting)
+        old = _remembered(**{**setting, **self.before})
         ghost = {f"{name} before": x for name, x in old.items() if np.size(x) > 1}
         return {**ghost, **{name: x for name, x in now.items() if name != "stopped"}}
 
 
 @lru_cache(maxsize=32)
-def _kept(arm: Arm, **setting) -> dict:
-    return tuned(arm, **setting)
+def _remembered(**setting) -> dict:
+    return tuned(CMU_DD_ARM_II, **setting)
 
 
 def _gains(kp, ki, kd) -> dict[str, np.ndarray]:

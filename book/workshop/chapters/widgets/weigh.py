@@ -6,7 +6,6 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ddlib._check import shaped
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.hinton import CENTRE
@@ -30,21 +29,12 @@ class WeighTheArm(CurveWidget):
         ``(torque, joint, samples)``.
     inertia : mapping
         The same names -> mean mass matrix that belongs to it, kg m², shape (2, 2).
-    **options
-        Passed on to `CurveWidget`.
     """
 
-    def __init__(
-        self, gradients: Mapping[str, np.ndarray], inertia: Mapping[str, np.ndarray], **options
-    ):
+    def __init__(self, gradients: Mapping[str, np.ndarray], inertia: Mapping[str, np.ndarray]):
         names = list(gradients)
         width = np.shape(gradients[names[0]])[-1]
-        self._gradients = {
-            name: shaped(f"gradient of {name!r}", g, (2, 2, width)) for name, g in gradients.items()
-        }
-        self._inertia = {
-            name: shaped(f"inertia of {name!r}", inertia[name], (2, 2)) for name in names
-        }
+        self._gradients, self._inertia = gradients, inertia
         self._x = (np.arange(width) - width // 2) * LOG_STEP
         reaches = range(1, width // 2 + 1)
         time = 1e3 * self._x
@@ -75,18 +65,15 @@ class WeighTheArm(CurveWidget):
                     cursor=("none", "place"), y_fit=True,
                 ),
             ],
-            **{
-                "alt": "Stems: the gradient of the shoulder's torque by its window. Bars: how much "
-                "each sample adds to its second moment. A line: the sum over more and more "
-                "samples, beside the arm's own inertia.",
-                "title": "Weigh the arm",
-                "scalars": [
-                    Scalar("now", "Sum", "kg m²", 2),
-                    Scalar("true", "The arm's own", "kg m²", 2),
-                ],
-                "note": "Shaded: the samples that are added up so far.",
-                **options,
-            },
+            alt="Stems: the gradient of the shoulder's torque by its window. Bars: how much "
+            "each sample adds to its second moment. A line: the sum over more and more "
+            "samples, beside the arm's own inertia.",
+            title="Weigh the arm",
+            scalars=[
+                Scalar("now", "Sum", "kg m²", 2),
+                Scalar("true", "The arm's own", "kg m²", 2),
+            ],
+            note="Shaded: the samples that are added up so far.",
         )  # fmt: skip
 
     def _curves(self, reach, learnt, entry) -> dict:

@@ -104,21 +104,21 @@ extras.push((view) => {
   };
   function several() {
     stop();
-    let left = 10;
-    if (calm.matches) for (; left; left--) step();
+    let remaining = 10;
+    if (calm.matches) for (; remaining; remaining--) step();
     else {
       timer = setInterval(() => {
         step();
-        if (!--left) stop();
+        if (!--remaining) stop();
       }, 250);
     }
   }
-  const one = buttonOf("Step", () => {
+  const single = buttonOf("Step", () => {
     stop();
     step();
   });
   const ten = buttonOf("Ten steps", several);
-  const said = make("p", { role: "status" });
+  const status = make("p", { role: "status" });
   const clear = () => Object.assign(view.walk, { last: 0, past: [] });
   view.resets.push(() => {
     stop();
@@ -134,7 +134,7 @@ extras.push((view) => {
     return `${many.replace("-", "−")}${end}`;
   };
   view.words = () => [words().slice(0, -1)].filter(Boolean);
-  view.controls.append(make("div", { class: "walk" }, one, ten, said));
+  view.controls.append(make("div", { class: "walk" }, single, ten, status));
   view.top.append(make("div", { class: "unit-box" }, unit.svg, view.numbers));
   const dots = (weights) =>
     weights.map((w) => chart.at(w, unitAt(w).error).map(short)).map(([x, y]) => `M${x} ${y}h0`).join("");
@@ -144,7 +144,7 @@ extras.push((view) => {
     unit.show(at);
     put(points, { d: dots(past.slice(-60)) });
     put(now, { d: dots([at]) });
-    write(said, words());
+    write(status, words());
   };
   view.after.push(follow);
   unit.show(view.get("weight"));

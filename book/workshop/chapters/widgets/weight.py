@@ -26,7 +26,7 @@ class OneWeight(CurveWidget):
     _esm = bundle(_HERE / "weight.js")
     _css = styles(_HERE / "weight.css")
 
-    def __init__(self, **options):
+    def __init__(self):
         weight = "weight"
         lines = {"error": "error", "tangent": "slope at this weight"}
         middle = WANTED**2 / 2
@@ -49,28 +49,25 @@ class OneWeight(CurveWidget):
                     y_range=(0.0, 1.0),
                 ),
             ],
-            **{
-                "title": "One weight",
-                "alt": "Left, the error of a unit over its weight: flat, then a valley, then flat; "
-                "a straight line touches it at the weight as it stands. Right, the unit's answer, "
-                "an S from 0 to 1, with the answer that is wanted.",
-                "scalars": [
-                    Scalar("answers", f"Answer (wanted: {WANTED})", digits=3),
-                    Scalar("errs", "Error", digits=4),
-                    Scalar("slope", "Slope of the error", digits=4),
-                    Scalar("step", "Next step of the weight", digits=3),
-                ],
-                "live": Live(
-                    ranges={
-                        **dict.fromkeys(("error", "tangent", "errs"), (0.0, middle)),
-                        **dict.fromkeys(("answer", "answers"), (0.0, 1.0)),
-                        "slope": (-_STEEPEST, _STEEPEST),
-                        "at": (-8.0, 8.0),
-                        "step": (-8.0, 8.0),
-                    }
-                ),
-                **options,
-            },
+            title="One weight",
+            alt="Left, the error of a unit over its weight: flat, then a valley, then flat; "
+            "a straight line touches it at the weight as it stands. Right, the unit's answer, "
+            "an S from 0 to 1, with the answer that is wanted.",
+            scalars=[
+                Scalar("answers", f"Answer (wanted: {WANTED})", digits=3),
+                Scalar("errs", "Error", digits=4),
+                Scalar("slope", "Slope of the error", digits=4),
+                Scalar("step", "Next step of the weight", digits=3),
+            ],
+            live=Live(
+                ranges={
+                    **dict.fromkeys(("error", "tangent", "errs"), (0.0, middle)),
+                    **dict.fromkeys(("answer", "answers"), (0.0, 1.0)),
+                    "slope": (-_STEEPEST, _STEEPEST),
+                    "at": (-8.0, 8.0),
+                    "step": (-8.0, 8.0),
+                }
+            ),
         )
 
 

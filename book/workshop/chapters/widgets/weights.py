@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.gridspec import GridSpec
 from matplotlib.patches import Rectangle
 
-from ddlib._check import instance
 from ddlib.analysis import roughness
 from ddlib.figures import COLOURS, illustrate
 from ddlib.figures.weights import dots, hinton_on, relative_weights
@@ -61,8 +60,6 @@ class WeightReader(_HintonWidget):
         joint: str = JOINTS[0],
         **options,
     ):
-        instance("start", start, Weights)
-        instance("trained", trained, Weights)
         shapes = [[getattr(w, f.name).shape for f in fields(Weights)] for w in (start, trained)]
         if shapes[0] != shapes[1] or trained.hidden_bias.ndim != 1:
             raise ValueError(f"start and trained must be one network, got {start!r}, {trained!r}")
@@ -79,17 +76,16 @@ class WeightReader(_HintonWidget):
             for common, scale in scales.items()
         }
         unit = self._names[0] if unit is None else unit
-        told = names.get(unit, unit)
         rows = {name: f"the {name}'s" for name in JOINTS}
-        each = {False: "each row has its own", True: "as in the report"}
-        done = {False: "as trained", True: "what training added"}
+        scale_of = {False: "each row has its own", True: "as in the report"}
+        part = {False: "as trained", True: "what training added"}
         super().__init__(
             trained,
             reach,
             self._curves,
             [
-                Choice("subtract", "Subtract the start", done, False, "switch"),
-                Choice("common", "One scale for all", each, False, "switch"),
+                Choice("subtract", "Subtract the start", part, False, "switch"),
+                Choice("common", "One scale for all", scale_of, False, "switch"),
                 Choice("unit", "Unit", names, unit),
                 Choice("joint", "Window", rows, joint),
             ],
@@ -106,8 +102,8 @@ class WeightReader(_HintonWidget):
             title="Read the weights",
             alt=(
                 f"All weights of a trained network as squares, in {len(names)} grey blobs, one "
-                f"for each unit; and a row of the unit {told}, from the {joint}'s window, as "
-                "squares above and as a curve below."
+                f"for each unit; and a row of the unit {names.get(unit, unit)}, from the {joint}'s "
+                "window, as squares above and as a curve below."
             ),
             scalars=[
                 Scalar("largest", "Largest weight of the row", digits=3),
@@ -123,7 +119,7 @@ class WeightReader(_HintonWidget):
         return functions[self._names.index(unit), JOINTS.index(joint)]
 
     def _curves(self, subtract, common, unit, joint) -> dict:
-        both = [self._row(each, unit, joint) for each in (False, True)]
+        both = [self._row(subtracted, unit, joint) for subtracted in (False, True)]
         full = self._shown[False].largest if common else np.abs(both[0]).max()
         return {
             "weights": both[subtract],

@@ -27,9 +27,9 @@ function curveOf(row, k) {
 function galleryOf(letter, guess) {
   const svg = make("svg", { role: "img" });
   const button = buttonOf(`${letter} learnt this arm`, guess);
-  const told = make("p", { class: "told" });
+  const counted = make("p", { class: "told" });
   const head = make("p", { class: "letter" }, letter);
-  return { svg, button, told, el: make("div", { class: "gallery" }, head, svg, button, told) };
+  return { svg, button, counted, el: make("div", { class: "gallery" }, head, svg, button, counted) };
 }
 
 // How many filters have which name, with its colour.
@@ -46,7 +46,7 @@ function build({ model, el }) {
   dress(el, title, "ddlib-whose");
   const get = (name) => model.get(name);
   const guessOf = (k) => get("guesses")[k] ?? "-";
-  const rightOf = (k) => SIDES[rounds[k].galleries.findIndex((one) => one.arm)];
+  const rightOf = (k) => SIDES[rounds[k].galleries.findIndex(({ arm }) => arm)];
 
   function keepAll(changes) {
     for (const [name, value] of Object.entries(changes)) model.set(name, value);
@@ -93,13 +93,13 @@ function build({ model, el }) {
     const k = get("round");
     const [mine, right] = [guessOf(k), rightOf(k)];
     if (drawn !== k) draw(k);
-    galleries.forEach(({ svg, button, told }, side) => {
+    galleries.forEach(({ svg, button, counted }, side) => {
       const { names, counts } = rounds[k].galleries[side];
       const known = mine !== "-";
       svg.querySelectorAll(".row").forEach((path, i) => path.setAttribute("class", `row ${known ? kindOf(names[i]) : ""}`));
       const inWords = counts.map(([name, many]) => `${many} ${calledOf(name)}`).join(", ");
       svg.setAttribute("aria-label", `Gallery ${SIDES[side]}: ${names.length} rows of weights${known ? `: ${inWords}` : ""}`);
-      told.replaceChildren(...(known ? countsOf(counts) : ["\u00a0"]));
+      counted.replaceChildren(...(known ? countsOf(counts) : ["\u00a0"]));
       button.disabled = known;
       button.setAttribute("aria-pressed", String(mine === SIDES[side]));
     });
@@ -109,11 +109,11 @@ function build({ model, el }) {
     const hits = tried.filter((i) => guessOf(i) === rightOf(i)).length;
     write(score, tried.length ? `${hits} of ${tried.length} right` : "no guess yet");
     const other = SIDES.find((letter) => letter !== right);
-    const said = `${right} learnt this arm’s torques, ${other} ${rounds[k].told}.`;
+    const answer = `${right} learnt this arm’s torques, ${other} ${rounds[k].learnt}.`;
     const begin = mine === right ? "Right:" : "No:";
-    write(verdict, mine === "-" ? "Which of the two learnt this arm’s torques?" : `${begin} ${said} ${rounds[k].remark}`);
+    write(verdict, mine === "-" ? "Which of the two learnt this arm’s torques?" : `${begin} ${answer} ${rounds[k].remark}`);
   }
-  const shown = make("div", { class: "galleries" }, ...galleries.map((one) => one.el));
+  const shown = make("div", { class: "galleries" }, ...galleries.map(({ el }) => el));
   el.replaceChildren(frame.el, bar, verdict, shown);
   const events = ["change:round", "change:guesses"];
   for (const event of events) model.on(event, update);

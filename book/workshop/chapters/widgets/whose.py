@@ -10,7 +10,6 @@ from typing import NamedTuple
 import numpy as np
 import traitlets as t
 
-from ddlib._check import finite_array
 from ddlib.analysis import classify
 from ddlib.figures import INK, illustrate
 from ddlib.widgets.base import PageWidget
@@ -27,7 +26,7 @@ class GuessRound(NamedTuple):
 
     own: np.ndarray  #: Of the network that learnt the arm's torques.
     other: np.ndarray  #: Of the one that learnt others.
-    told: str  #: What the other one learnt: follows its letter.
+    learnt: str  #: What the other one learnt: follows its letter.
     remark: str  #: A sentence after the answer.
 
 
@@ -51,55 +50,28 @@ class WhoseFilters(PageWidget):
     guesses = t.Unicode(help="A or B for each round, - where there is no guess").tag(sync=True)
 
     def __init__(self, rounds: Sequence[GuessRound], seed: int = 1):
-        if not rounds:
-            raise ValueError("rounds must be one or more, got none")
         first = np.random.default_rng(seed).permutation(len(rounds)) % 2 == 0
-        shown = [_shown(each, at) for each, at in zip(rounds, first)]
+        shown = [_shown(*pair) for pair in zip(rounds, first)]
         sides = [gallery["rows"] for gallery in shown[0]["galleries"]]
         alt = (
             "Two galleries of rows of weights, A and B. One belongs to a network that learnt the "
-            f"arm's torques, the other one to a network that {rounds[0].told}."
+            f"arm's torques, the other one to a network that {rounds[0].learnt}."
         )
         spec = {"key": "whose", "title": "Which network learnt this arm?", "rounds": shown}
         self._keep(spec=spec, still=_still(sides, alt), still_alt=alt)
         super().__init__(guesses="-" * len(rounds))
 
-    @t.validate("round")
-    def _a_round(self, proposal):
-        last = len(self.spec["rounds"]) - 1
-        if not 0 <= proposal["value"] <= last:
-            raise t.TraitError(f"round must be 0 to {last}, got {proposal['value']}")
-        return proposal["value"]
 
-    @t.validate("guesses")
-    def _some_guesses(self, proposal):
-        text, count = proposal["value"], len(self.spec["rounds"])
-        if len(text) != count or set(text) - set("AB-"):
-            raise t.TraitError(f"guesses must be {count} of A, B and -, got {text!r}")
-        return text
-
-    @property
-    def right(self) -> str:
-        """The right answers, round by round."""
-        return "".join(
-            "AB"[[gallery["arm"] for gallery in each["galleries"]].index(True)]
-            for each in self.spec["rounds"]
-        )
-
-
-def _shown(one: GuessRound, own_first: bool) -> dict:
-    galleries = [_gallery("own", one.own, True), _gallery("other", one.other, False)]
+def _shown(guess: GuessRound, own_first: bool) -> dict:
+    galleries = [_gallery(guess.own, True), _gallery(guess.other, False)]
     return {
         "galleries": galleries if own_first else galleries[::-1],
-        "told": one.told,
-        "remark": one.remark,
+        "learnt": guess.learnt,
+        "remark": guess.remark,
     }
 
 
-def _gallery(what: str, filters, arm: bool) -> dict:
-    filters = finite_array(what, filters)
-    if filters.ndim != 2 or filters.shape[1] < 5:
-        raise ValueError(f"{what} must have shape (filters, samples), got {filters.shape}")
+def _gallery(filters, arm: bool) -> dict:
     names = classify(filters).tolist()
     rows = filters / np.maximum(np.abs(filters).max(-1, keepdims=True), 1e-12)
     counts = [list(pair) for pair in Counter(names).most_common()]

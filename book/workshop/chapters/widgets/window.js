@@ -11,21 +11,21 @@ computes((view) => {
   const reach = (strip.x.length - 1) / 2;
   view.networks ??= modelsOf(model.get("layouts"), model.get("weights"));
   view.recorded ??= recordedOf(model.get("recorded"), times.length, reach);
-  view.told ??= new Map(); // of the widths that were chosen
+  view.predicted ??= new Map(); // of the widths that were chosen
   const { positions, torques } = view.recorded;
   const [width, sample] = ["width", "sample"].map(view.get);
   const network = view.networks.find(({ net }) => net.width === width);
-  if (!view.told.has(width)) {
+  if (!view.predicted.has(width)) {
     const scaled = scaledOf(network, positions);
-    view.told.set(width, { scaled, told: toldTorques(network, scaled, reach, reach + times.length) });
+    view.predicted.set(width, { scaled, predicted: toldTorques(network, scaled, reach, reach + times.length) });
   }
-  const { scaled, told } = view.told.get(width);
+  const { scaled, predicted } = view.predicted.get(width);
   const { hidden, output } = activity(network.net, windowAt(network, scaled, reach + sample));
   const curves = { activity: [...hidden, ...output] };
   NAMES.forEach((name, j) => {
     curves[`${name} position`] = scaled[j].subarray(sample, sample + 2 * reach + 1);
-    curves[`${name} torque`] = told.map((tau) => tau[j]);
-    curves[`${name} network`] = [told[sample][j]];
+    curves[`${name} torque`] = predicted.map((tau) => tau[j]);
+    curves[`${name} network`] = [predicted[sample][j]];
     curves[`${name} measured`] = [torques[j][sample]];
   });
   const step = (times.at(-1) - times[0]) / (times.length - 1);

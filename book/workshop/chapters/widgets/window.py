@@ -8,9 +8,7 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
-from ddlib._check import finite_array, instance
 from ddlib.learning import TorqueModel, sliding_windows
-from ddlib.learning.windows import check_width
 from ddlib.simulation import Recording
 from ddlib.widgets.base import CurveWidget, Panel, Scalar
 from ddlib.widgets.engine._plain import networks
@@ -36,8 +34,6 @@ class SlidingWindow(CurveWidget):
         One run, with rests long enough for the largest window.
     first : int, optional
         The window size that is shown first. Default: the middle one.
-    **options
-        Passed on to `CurveWidget`.
     """
 
     _esm = bundle(_HERE / "window.js")
@@ -52,10 +48,7 @@ class SlidingWindow(CurveWidget):
         models: Mapping[int, TorqueModel],
         recording: Recording,
         first: int | None = None,
-        **options,
     ):
-        instance("recording", recording, Recording)
-        finite_array("recording.q", recording.q, 2)
         if recording.q.ndim != 2:
             raise ValueError(f"recording must be one run, got shape {recording.q.shape}")
         models = _check_models(models, 0)
@@ -126,7 +119,6 @@ class SlidingWindow(CurveWidget):
                 for what in ("network", "measured")
             ],
             live=Live(ranges=self._ranges()),
-            **options,
         )
         layouts, weights = networks(models.values())
         whole = slice(recording.motion.start - reach, recording.motion.stop + reach)
@@ -172,8 +164,6 @@ class HiddenTorque(CurveWidget):
         One run, with rests long enough for the window.
     width : int
         Samples of the window, odd.
-    **options
-        Passed on to `CurveWidget`.
     """
 
     _esm = bundle(_HERE / "hidden.js")
@@ -181,12 +171,7 @@ class HiddenTorque(CurveWidget):
     recorded = t.Bytes(help="positions with half a window on either side, torques", read_only=True)
     recorded.tag(sync=True)
 
-    def __init__(self, recording: Recording, width: int = 21, **options):
-        instance("recording", recording, Recording)
-        finite_array("recording.q", recording.q, 2)
-        if recording.q.ndim != 2:
-            raise ValueError(f"recording must be one run, got shape {recording.q.shape}")
-        check_width(width)
+    def __init__(self, recording: Recording, width: int = 21):
         self._step = recording.step
         self._half, self._time = width // 2, recording.t[recording.motion]
         self._windows = np.degrees(sliding_windows(recording.q, width, recording.motion))
@@ -226,7 +211,6 @@ class HiddenTorque(CurveWidget):
                     for k in (0, len(self._time) - 1)
                 ]
             ),
-            **options,
         )
         motion, half = recording.motion, self._half
         parts = recording.q[motion.start - half : motion.stop + half].T.ravel(), self._torque.T

@@ -1,5 +1,5 @@
 // The thrown arm without its picture: who moves the arm, what is logged, what the network makes of it.
-// `spec` is ThrownArm's (engine/throw.py).
+// `spec` is ThrownArm's (throw.py).
 
 import {
   JOINTS, activity, drive, networkOf, pickAndPlace, pid, placesOf, respond, scaledWindow,

@@ -332,6 +332,7 @@ class Printed(float):
     """A number that keeps the digits it is printed with."""
 
     def __new__(cls, text: str):
+        """From the text, like "0.10"."""
         number = super().__new__(cls, text)
         number.text = text
         return number

@@ -24,7 +24,7 @@ class AnyWidget(traitlets.HasTraits):
     _held: set | None = None  # traits that changed while nothing is told
 
     def __init__(self, **traits):
-        self._number, self._told, self._heard = next(_numbers), {}, []
+        self._number, self._sent, self._heard = next(_numbers), {}, []
         self._moved: set[str] = set()
         super().__init__(**traits)
 
@@ -39,7 +39,7 @@ class AnyWidget(traitlets.HasTraits):
     def close(self):
         """The page has no model of it any more."""
         shown.pop(self._number, None)
-        self._told.clear()
+        self._sent.clear()
 
     def on_msg(self, callback):
         """Call ``callback(widget, content, buffers)`` at each message from the page's script."""
@@ -48,8 +48,8 @@ class AnyWidget(traitlets.HasTraits):
     def send(self, content, buffers=()):
         """Send the page's script a message."""
         if self._number in shown:
-            told = {"number": self._number, "content": content}
-            kernel.page(json.dumps(told, default=_plain), list(buffers))
+            message = {"number": self._number, "content": content}
+            kernel.page(json.dumps(message, default=_plain), list(buffers))
 
     @contextmanager
     def hold_sync(self):
@@ -87,16 +87,16 @@ class AnyWidget(traitlets.HasTraits):
             value = getattr(self, name)
             of = binary if isinstance(value, bytes) else state
             value = value if of is binary else json.loads(json.dumps(value, default=_plain))
-            if name not in self._told or self._told[name] != value:
-                self._told[name] = of[name] = value
+            if name not in self._sent or self._sent[name] != value:
+                self._sent[name] = of[name] = value
         if state or binary or more:
-            told = {"number": self._number, "state": state, "binary": list(binary), **more}
-            kernel.page(json.dumps(told), list(binary.values()))
+            message = {"number": self._number, "state": state, "binary": list(binary), **more}
+            kernel.page(json.dumps(message), list(binary.values()))
 
     def hear(self, state: dict):
         """Take over what the page has set, and tell it what came out differently."""
         known = {name: value for name, value in state.items() if self.has_trait(name)}
-        self._told |= known
+        self._sent |= known
         with self.hold_sync():
             self._held |= known.keys()
             with self.hold_trait_notifications():
@@ -112,18 +112,18 @@ def _plain(value):
 
 def heard(text: str, buffers) -> list[AnyWidget]:
     """Take a message of the page; returns the widgets whose traits that changed."""
-    told = json.loads(text)
-    widget = shown.get(told["number"])
+    message = json.loads(text)
+    widget = shown.get(message["number"])
     if widget is None:
         return []
-    for each in shown.values():  # one may be linked to another
-        each._moved.clear()
+    for other in shown.values():  # one may be linked to another
+        other._moved.clear()
     parts = [bytes(part.to_py() if hasattr(part, "to_py") else part) for part in buffers]
-    if "closed" in told:
+    if "closed" in message:
         widget.close()
-    elif "content" in told:
+    elif "content" in message:
         for callback in widget._heard:
-            callback(widget, told["content"], parts)
+            callback(widget, message["content"], parts)
     else:
-        widget.hear(told["state"] | dict(zip(told["binary"], parts)))
-    return [each for each in shown.values() if each._moved]
+        widget.hear(message["state"] | dict(zip(message["binary"], parts)))
+    return [moved for moved in shown.values() if moved._moved]

@@ -19,7 +19,7 @@ self.fetch = async (...request) => {
   return new Response(answer.body.pipeThrough(count), { headers, status });
 };
 
-const MODULES = ["absent.py", "names.py", "kernel.py"];
+const MODULES = ["names.py", "kernel.py"];
 // Modules of this site that stand in for others.
 const INSTEAD = ["torch", "anywidget", "ipywidgets", "IPython"];
 let python, kernel, packages;
@@ -46,7 +46,7 @@ async function start(data) {
   [...MODULES, ...data].forEach((path, k) =>
     python.FS.writeFile(`/book/${path}`, new Uint8Array(files[k])),
   );
-  python.runPython("import sys; sys.path.insert(0, '/book'); import absent; absent.start()");
+  python.runPython("import sys; sys.path.insert(0, '/book')");
   kernel = python.pyimport("kernel");
   kernel.start(python.runPython(PAUSE));
   kernel.page = (text, buffers) => tell({ widget: JSON.parse(text), buffers: buffers.toJs() });

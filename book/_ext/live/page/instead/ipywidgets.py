@@ -13,11 +13,11 @@ ESM = """
 export default { render({ model, el }) {
   const label = document.createElement("label");
   const range = document.createElement("input");
-  const told = document.createElement("output");
+  const shown = document.createElement("output");
   range.type = "range";
   const show = () => {
     for (const name of ["min", "max", "step", "value"]) range[name] = model.get(name);
-    told.textContent = model.get("value");
+    shown.textContent = model.get("value");
   };
   range.addEventListener("input", () => {
     model.set("value", Number(range.value));
@@ -26,7 +26,7 @@ export default { render({ model, el }) {
   });
   model.on("change", show);
   show();
-  label.append(model.get("description"), range, told);
+  label.append(model.get("description"), range, shown);
   label.style.cssText = "display:flex;flex-wrap:wrap;gap:.6rem;align-items:center";
   el.append(label);
   return () => model.off("change", show);

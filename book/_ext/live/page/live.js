@@ -49,9 +49,9 @@
     }
   };
   const isPair = (c) => Array.isArray(c) && c.length === 2 && c.every((t) => typeof t === "string");
-  const work = (found) => ({
-    changes: Object.fromEntries(Object.entries(found?.changes ?? {}).filter(([, c]) => isPair(c))),
-    solved: Array.isArray(found?.solved) ? found.solved : [],
+  const work = (record) => ({
+    changes: Object.fromEntries(Object.entries(record?.changes ?? {}).filter(([, c]) => isPair(c))),
+    solved: Array.isArray(record?.solved) ? record.solved : [],
   });
   let mine = work(read(MINE));
   try {
@@ -113,13 +113,13 @@
   reacts.title = "It runs half a second after a change.";
 
   // What is kept, to be taken along and to be erased.
-  const told = make("summary");
-  const own = make("details", { class: "live-own" }, told);
+  const summary = make("summary");
+  const own = make("details", { class: "live-own" }, summary);
   const heardOf = make("p", { class: "live-kept", role: "status" });
   const asked = cells.filter((c) => c.kind === "answer");
   function tally() {
     const done = asked.filter((c) => mine.solved.includes(c.id)).length;
-    told.textContent = `Solved: ${done} of ${asked.length}. Save or erase your work`;
+    summary.textContent = `Solved: ${done} of ${asked.length}. Save or erase your work`;
     for (const cell of asked)
       if (cell.solved) cell.solved.textContent = mine.solved.includes(cell.id) ? "Solved" : "";
   }
@@ -141,15 +141,15 @@
     "This browser keeps nothing for this site. Your changes last until you leave the page; “Save as a file” keeps them.";
 
   function pages() {
-    const found = {};
+    const every = {};
     try {
       for (const key of Object.keys(localStorage))
-        if (key.startsWith(FOLDER)) found[key.slice(FOLDER.length)] = work(read(key));
+        if (key.startsWith(FOLDER)) every[key.slice(FOLDER.length)] = work(read(key));
     } catch {
       blocked = true;
     }
-    if (Object.keys(mine.changes).length || mine.solved.length) found[MINE.slice(FOLDER.length)] = mine;
-    return found;
+    if (Object.keys(mine.changes).length || mine.solved.length) every[MINE.slice(FOLDER.length)] = mine;
+    return every;
   }
 
   function takeOut() {
@@ -163,22 +163,22 @@
 
   async function takeIn(file) {
     picked.value = "";
-    let found;
+    let content;
     try {
-      found = JSON.parse(await file.text());
+      content = JSON.parse(await file.text());
     } catch {
-      found = undefined;
+      content = undefined;
     }
-    if (found?.format !== FORMAT || !found.pages || typeof found.pages !== "object") {
+    if (content?.format !== FORMAT || !content.pages || typeof content.pages !== "object") {
       heardOf.textContent = "This file holds no work from this book. Nothing was changed.";
       return;
     }
     remember();
     const here = MINE.slice(FOLDER.length);
-    const both = Object.entries(found.pages).map(([page, one]) => ({
+    const both = Object.entries(content.pages).map(([page, theirs]) => ({
       page,
       own: page === here ? mine : work(read(FOLDER + page)),
-      other: work(one),
+      other: work(theirs),
     }));
     const differ = both.flatMap(({ own, other }) =>
       Object.keys(other.changes).filter((id) => own.changes[id] && own.changes[id][1] !== other.changes[id][1]),
@@ -253,15 +253,15 @@
     cell.name = `cell ${number + 1}`;
     cell.away = [];
     const caption = cell.el.querySelector(".cell_output figcaption");
-    cell.told = make("div", {
+    cell.output = make("div", {
       class: `live-output ${caption ? "" : "cell_output"}`,
       role: "group",
       "aria-label": `Output of ${cell.name}`,
     });
-    if (caption) caption.before(cell.told);
-    else cell.el.append(cell.told);
+    if (caption) caption.before(cell.output);
+    else cell.el.append(cell.output);
     if (cell.needs) {
-      cell.told.append(note("torch", cell.needs));
+      cell.output.append(note("torch", cell.needs));
       return;
     }
     const tools = make("div", { class: "live-tools" });
@@ -290,7 +290,7 @@
     tools.append(cell.time, cell.solved, cell.mark);
     cell.tools = tools;
     if (check) {
-      cell.told.before(tools);
+      cell.output.before(tools);
       return;
     }
     cell.area = make("textarea", {
@@ -356,7 +356,7 @@
   const NUMBERS = /(?<![\w.\])])[-]?\d[\d_]*(?:\.\d*)?(?:[eE][-+]?\d+)?(?![\w(])/g;
 
   // Where a handle's number stands in the code as it is now; undefined if it is not there any more.
-  function found(cell, { target, place, count }) {
+  function spotOf(cell, { target, place, count }) {
     let from = 0;
     for (const line of cell.area.value.split("\n")) {
       const sign = line.indexOf("=");
@@ -389,14 +389,14 @@
       const shown = make("output", { for: id });
       const name = handle.unit ? `${handle.label}, ${handle.unit}` : handle.label;
       range.addEventListener("input", () => {
-        const spot = found(cell, handle);
+        const spot = spotOf(cell, handle);
         if (!spot) return;
         const value = written(Number(range.value), handle);
         cell.area.setRangeText(value, spot.start, spot.end, "preserve");
         changed(cell);
       });
       cell.sliders.push(() => {
-        const spot = found(cell, handle);
+        const spot = spotOf(cell, handle);
         range.disabled = !spot;
         if (!spot) return (shown.textContent = "–");
         if (Number(range.value) !== spot.value) range.value = spot.value;
@@ -424,13 +424,13 @@
     for (const cell of cells) {
       if (!cell.mark) continue;
       const behind = cell.stale || later.has(cell.place);
-      const said = different.includes(cell)
+      const words = different.includes(cell)
         ? "Changed, and not run since."
         : behind
           ? "May show what came before your change."
           : "";
       count += behind || different.includes(cell);
-      if (cell.mark.textContent !== said) cell.mark.textContent = said;
+      if (cell.mark.textContent !== words) cell.mark.textContent = words;
       cell.el.classList.toggle("live-stale", behind);
     }
     follows.disabled = !count;
@@ -458,15 +458,15 @@
   // The solution runs where the answer stands, and what it gives to names is not kept.
   function beside(answer, check) {
     if (!answer.beside) {
-      const told = make("div", { class: "live-output", role: "group" });
-      told.setAttribute("aria-label", `Output of the solution of ${answer.name}`);
-      const ours = make("div", {}, make("p", { class: "live-head" }, "The solution"), told);
+      const output = make("div", { class: "live-output", role: "group" });
+      output.setAttribute("aria-label", `Output of the solution of ${answer.name}`);
+      const ours = make("div", {}, make("p", { class: "live-head" }, "The solution"), output);
       const yours = make("div", {}, make("p", { class: "live-head" }, "Your answer"));
       const both = make("div", { class: "live-beside" }, yours, ours);
-      check.told.before(both);
-      yours.append(check.told);
+      check.output.before(both);
+      yours.append(check.output);
       answer.beside = {
-        name: `solution of ${answer.name}`, place: answer.place, el: check.el, told, built: [],
+        name: `solution of ${answer.name}`, place: answer.place, el: check.el, output, built: [],
         source: `${answer.solution}\n${check.source}`, names: answer.solves, extra: true, away: [],
         kind: "solution", time: check.time,
       }; // prettier-ignore
@@ -489,8 +489,8 @@
   }
 
   function emptied(cell) {
-    for (const each of hosts) each.drop(cell.told);
-    cell.told.replaceChildren();
+    for (const widgets of hosts) widgets.drop(cell.output);
+    cell.output.replaceChildren();
   }
 
   function restore(cell) {
@@ -505,7 +505,7 @@
     for (const cell of cells) {
       restore(cell);
       emptied(cell);
-      cell.told.append(...(cell.needs ? [note("torch", cell.needs)] : []));
+      cell.output.append(...(cell.needs ? [note("torch", cell.needs)] : []));
       if (cell.beside) emptied(cell.beside);
       Object.assign(cell, { shown: cell.source, stale: false, failed: false, asked: false });
       Object.assign(cell, { names: cell.asBuilt, prints: undefined, altered: undefined });
@@ -515,7 +515,7 @@
     remember();
     clearTimeout(timer);
     drop();
-    kept = "Code and output are the book's again. Python starts afresh.";
+    meanwhile = "Code and output are the book's again. Python starts afresh.";
     restart();
     mark();
     document.documentElement.dataset.live = "idle";
@@ -524,7 +524,7 @@
   // --- what comes from the worker ---
   function note(kind, text = "") {
     const link = make("a", { href: notebook, download: "" }, "download the notebook");
-    const said = {
+    const sentence = {
       torch: () => [`This cell needs ${text}, not available in the page: `, link, "."],
       twin: () => [
         "PyTorch is not available in a page: a small stand-in computes the same with numpy.",
@@ -553,7 +553,7 @@
           "that you wrote is lost.",
       ],
     }[kind];
-    return said ? make("p", { class: "live-note" }, ...said()) : "";
+    return sentence ? make("p", { class: "live-note" }, ...sentence()) : "";
   }
 
   function printed(text, kind) {
@@ -585,13 +585,13 @@
   }
 
   function show(cell, kind, text) {
-    const place = cell.told;
+    const place = cell.output;
     if (kind === "again") return emptied(cell);
     if (kind === "text" || kind === "warning" || kind === "error") {
       const last = place.lastElementChild;
       if (last?.classList.contains(`live-${kind}`)) last.firstChild.append(text);
       else place.append(printed(text, kind));
-      if (kind === "text") cell.said = (cell.said ?? "") + text;
+      if (kind === "text") cell.printed = (cell.printed ?? "") + text;
     } else if (kind === "html" || kind === "figure") {
       const el = make("div", { class: `output text_html ${kind === "figure" ? "live-wide" : ""}` });
       el.innerHTML = text;
@@ -640,7 +640,7 @@
 
   // --- the worker, and what is to be run ---
   let worker, ready, running, expected, loaded, interrupts, turns, asking;
-  let kept = ""; // what is said while Python starts afresh and nobody waits for it
+  let meanwhile = ""; // what is said while Python starts afresh and nobody waits for it
   let ran = 0; // cells, since something was asked for
   let spread = false; // whether what follows runs, too
   let patience = 5000; // ms: a restart takes so long
@@ -678,9 +678,9 @@
     const share = Math.min(100, Math.round((100 * loaded) / expected));
     progress.setAttribute("aria-valuenow", share);
     progress.firstChild.style.inlineSize = `${share}%`;
-    const told = `${(loaded / 1e6).toFixed(0)} MB`;
-    progress.setAttribute("aria-valuetext", told);
-    if (!ready) say(kept || (share < 100 ? "Loading Python …" : "Starting Python …"));
+    const size = `${(loaded / 1e6).toFixed(0)} MB`;
+    progress.setAttribute("aria-valuetext", size);
+    if (!ready) say(meanwhile || (share < 100 ? "Loading Python …" : "Starting Python …"));
     else if (running) say(`Running ${running.name}: loading what it imports …`);
   }
 
@@ -690,7 +690,7 @@
 
   function inBoth({ form, number, text }) {
     const cell = cells.flatMap((c) => [c, c.beside]).find((c) => c?.name === form);
-    const el = cell?.told.querySelectorAll(".live-wide")[number];
+    const el = cell?.output.querySelectorAll(".live-wide")[number];
     if (el) el.innerHTML = text;
   }
 
@@ -704,7 +704,7 @@
       ready = true;
       progress.hidden = true;
       expected = megabytes[1] * 1e6;
-      say(kept || "Python is ready.");
+      say(meanwhile || "Python is ready.");
       next();
     } else if (message.failed) lost(message.failed);
     else if (message.began) clearTimeout(asking);
@@ -747,7 +747,7 @@
     drop();
     ended();
     if (running) {
-      running.told.append(note("lost", why));
+      running.output.append(note("lost", why));
       released(running);
       if (!running.extra) running.failed = true;
     }
@@ -757,10 +757,10 @@
     mark();
   }
 
-  function released(cell, told = "") {
+  function released(cell, time = "") {
     cell.el.classList.remove("live-running");
     cell.gauge?.remove();
-    if (cell.time) cell.time.textContent = told;
+    if (cell.time) cell.time.textContent = time;
   }
 
   // A cell with all that it may read: of code that was changed and has not run yet, any word.
@@ -786,16 +786,16 @@
       const missing = needed.filter((c) => !c.turn && !c.needs && !waiting.has(c));
       const bad = missing.length || cell.extra ? undefined : spoiled(graph, cell.place);
       if (!missing.length && !bad) return cell;
-      for (const one of missing) waiting.add(one);
-      if (bad) for (const one of bad) waiting.add(one);
+      for (const other of missing) waiting.add(other);
+      if (bad) for (const other of bad) waiting.add(other);
     }
     return undefined;
   }
 
   function spoiled(graph, place) {
-    const found = follow.spoiled(graph, place, cells.map((c) => c.last));
-    if (!found) return undefined;
-    const { maker, name } = found;
+    const broken = follow.spoiled(graph, place, cells.map((c) => c.last));
+    if (!broken) return undefined;
+    const { maker, name } = broken;
     cells[maker].turn = 0;
     const others = cells.filter((_, k) => {
       const { changes, from } = graph[k];
@@ -818,7 +818,7 @@
     cell.quiet = !cell.asked && !cell.stale && !cell.failed && cell.sent === cell.shown && !cell.widget;
     cell.failed = cell.cancelled = cell.stopping = false;
     cell.news = undefined;
-    cell.said = "";
+    cell.printed = "";
     if (!cell.quiet) fresh(cell);
     cell.el.classList.add("live-running");
     if (cell.time && !cell.quiet) cell.time.textContent = "running …";
@@ -850,8 +850,8 @@
     const marked = count ? ` ${toRun(count)}` : "";
     ran += !cell.quiet;
     if (!waiting.size) {
-      const one = cell.name.replace(/^./, (c) => c.toUpperCase());
-      const name = ran === cells.length ? "All cells have" : ran > 1 ? `${ran} cells have` : `${one} has`;
+      const title = cell.name.replace(/^./, (c) => c.toUpperCase());
+      const name = ran === cells.length ? "All cells have" : ran > 1 ? `${ran} cells have` : `${title} has`;
       const ask = react.checked ? "Now change a number." : "Now change a number, and press “Run what follows”.";
       say(
         cell.failed
@@ -869,7 +869,7 @@
     cell.turn = cell.last = ++turns;
     cell.shown = cell.sent;
     cell.stale = false;
-    if (cell.kind === "check" && cell.said.startsWith("Right")) {
+    if (cell.kind === "check" && cell.printed.startsWith("Right")) {
       const { id } = cells[cell.place - 1];
       if (!mine.solved.includes(id)) mine.solved.push(id);
       remember();
@@ -903,17 +903,17 @@
     else for (const name of [...differs]) if (!prints[name]) differs.delete(name);
     const readers = [earlier, graph].flatMap((g) => follow.readers(cells, g, cell.place, differs));
     for (const k of new Set(readers)) {
-      const one = cells[k];
-      if (one.asked && waiting.has(one)) continue;
-      if (one.kind === "answer" || one.needs) continue;
-      one.stale = true;
-      if (spread) waiting.add(one);
+      const reader = cells[k];
+      if (reader.asked && waiting.has(reader)) continue;
+      if (reader.kind === "answer" || reader.needs) continue;
+      reader.stale = true;
+      if (spread) waiting.add(reader);
     }
   }
 
   function enqueue(more, on = false) {
     document.documentElement.dataset.live = "running";
-    kept = "";
+    meanwhile = "";
     spread = on;
     for (const cell of more) {
       cell.asked = true;
@@ -946,10 +946,10 @@
     }, patience);
   }
 
-  function restart(told = "") {
+  function restart(time = "") {
     ended();
     clearTimeout(asking);
-    if (running) released(running, told);
+    if (running) released(running, time);
     running = undefined;
     boot();
   }
@@ -962,9 +962,9 @@
     cell.stopping = true;
     const end = () => {
       if (running !== cell) return;
-      cell.told.append(note("ended"));
+      cell.output.append(note("ended"));
       if (!cell.extra) cell.failed = true;
-      kept = "Stopped. Python starts afresh.";
+      meanwhile = "Stopped. Python starts afresh.";
       restart("stopped");
       mark();
       document.documentElement.dataset.live = "idle";
@@ -976,8 +976,8 @@
   // Stopped before Python was there: what was to be run waits for a click.
   function asBefore() {
     for (const cell of cells) cell.asked = false;
-    kept = "Stopped. Python is being loaded, and nothing runs.";
-    say(kept);
+    meanwhile = "Stopped. Python is being loaded, and nothing runs.";
+    say(meanwhile);
     document.documentElement.dataset.live = "idle";
   }
 

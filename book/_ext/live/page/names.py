@@ -56,15 +56,15 @@ class Names:
     alters: dict[str, set[str]] = field(default_factory=dict)
     holds: dict[str, set[str]] = field(default_factory=dict)
 
-    def told(self) -> dict:
+    def as_dict(self) -> dict:
         """For the page, without what is empty."""
-        told = {}
-        for kind, found in vars(self).items():
-            if isinstance(found, dict):
-                found = {name: sorted(of) for name, of in sorted(found.items()) if of}
-            if found:
-                told[kind] = found if isinstance(found, dict) else sorted(found)
-        return told
+        lists = {}
+        for kind, known in vars(self).items():
+            if isinstance(known, dict):
+                known = {name: sorted(of) for name, of in sorted(known.items()) if of}
+            if known:
+                lists[kind] = known if isinstance(known, dict) else sorted(known)
+        return lists
 
 
 def names(source: str, imported: Collection[str] = ()) -> Names:
@@ -76,16 +76,16 @@ def names(source: str, imported: Collection[str] = ()) -> Names:
     cell = _Cell(imported)
     cell.statements(body)
     cell.close()
-    return cell.told
+    return cell.names
 
 
 class _Cell(ast.NodeVisitor):
     """Goes through statements as they run, and knows what is bound by then."""
 
     def __init__(self, imported: Collection[str]):
-        self.told = Names()
+        self.names = Names()
         self.imported = set(imported)
-        self.sure: list[set[str]] = [set()]  # bound by now, in each branch around
+        self.bound: list[set[str]] = [set()]  # bound by now, in each branch around
         self.parts: dict[str, set[str]] = {}  # of a loop's names: what they are parts of
 
     def statements(self, body):
@@ -104,46 +104,40 @@ class _Cell(ast.NodeVisitor):
             headers = node.items
         elif hasattr(node, "body"):
             return
-        nodes = [each for header in headers for each in ast.walk(header)]
+        nodes = [part for header in headers for part in ast.walk(header)]
         loads = {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}
         for name in set().union(*map(_stored, nodes)):
-            self.told.holds.setdefault(name, set()).update(loads - {name})
+            self.names.holds.setdefault(name, set()).update(loads - {name})
             for inner in (_Function(n) for n in nodes if isinstance(n, ast.Lambda)):
-                self.told.carries.setdefault(name, set()).update(inner.reads)
-                self.told.alters.setdefault(name, set()).update(inner.changes - self.imported)
+                self.names.carries.setdefault(name, set()).update(inner.reads)
+                self.names.alters.setdefault(name, set()).update(inner.changes - self.imported)
 
     def close(self):
         """Take what names hold through each other together; keep what the page can use."""
-        told = self.told
-        given = told.writes | told.perhaps | told.changes
-        reached = {}
-        for name in given:
-            found, new = set(), {name}
-            while new:
-                found |= new
-                new = set().union(*(told.holds.get(n, ()) for n in new)) - found
-            reached[name] = found
+        cell = self.names
+        given = cell.writes | cell.perhaps | cell.changes
+        sources = {name: _reached(name, cell.holds) for name in given}
         for kind in ("carries", "alters"):
-            own = getattr(told, kind)
-            total = {n: set().union(*(own.get(m, ()) for m in reached[n])) for n in given}
-            setattr(told, kind, {n: of for n, of in total.items() if of})
-        held = {n: (reached[n] & told.reads) - {n} for n in given}
-        told.holds = {n: of for n, of in held.items() if of}
+            direct = getattr(cell, kind)
+            total = {n: set().union(*(direct.get(m, ()) for m in sources[n])) for n in given}
+            setattr(cell, kind, {n: names for n, names in total.items() if names})
+        outer = {n: (sources[n] & cell.reads) - {n} for n in given}
+        cell.holds = {n: names for n, names in outer.items() if names}
 
     def branch(self, *bodies):
         """Bodies of which each may run or not: what they bind is bound perhaps."""
         for body in bodies:
-            self.sure.append(set(self.sure[-1]))
+            self.bound.append(set(self.bound[-1]))
             self.statements(body)
-            self.sure.pop()
+            self.bound.pop()
 
     def read(self, name):
-        if name not in self.sure[-1]:
-            self.told.reads.add(name)
+        if name not in self.bound[-1]:
+            self.names.reads.add(name)
 
     def write(self, name):
-        (self.told.writes if len(self.sure) == 1 else self.told.perhaps).add(name)
-        self.sure[-1].add(name)
+        (self.names.writes if len(self.bound) == 1 else self.names.perhaps).add(name)
+        self.bound[-1].add(name)
         self.imported.discard(name)
 
     def change(self, name, whole=True):
@@ -156,21 +150,21 @@ class _Cell(ast.NodeVisitor):
             for other in of - {name}:
                 self.change(other)
             self.parts[name] = of
-        if name not in self.sure[-1] and name not in self.imported:
-            self.told.reads.add(name)
-            self.told.changes.add(name)
+        if name not in self.bound[-1] and name not in self.imported:
+            self.names.reads.add(name)
+            self.names.changes.add(name)
 
     # --- names ---
     def visit_Name(self, node):
         (self.read if isinstance(node.ctx, ast.Load) else self.write)(node.id)
         if isinstance(node.ctx, ast.Del):
-            self.told.perhaps.add(node.id)
+            self.names.perhaps.add(node.id)
 
     def visit_alias(self, node):
         name = node.asname or node.name.partition(".")[0]
         self.write(name)
         self.imported.add(name)
-        self.told.imports.add(name)
+        self.names.imports.add(name)
 
     def visit_Assign(self, node):
         self.visit(node.value)
@@ -226,7 +220,7 @@ class _Cell(ast.NodeVisitor):
         if isinstance(node.func, ast.Attribute) and node.func.attr in IN_PLACE:
             for name in _bases(node.func):
                 self.change(name)
-                made_for = self.told.holds.get(name, ()) if node.func.attr == "step" else ()
+                made_for = self.names.holds.get(name, ()) if node.func.attr == "step" else ()
                 for other in made_for:
                     self.change(other)  # an optimiser takes its step with what it was made for
 
@@ -277,25 +271,17 @@ class _Cell(ast.NodeVisitor):
         for name in inner.reads:
             self.read(name)
         if hasattr(node, "name"):
-            self.told.carries.setdefault(node.name, set()).update(inner.reads)
-            self.told.alters.setdefault(node.name, set()).update(inner.changes - self.imported)
+            self.names.carries.setdefault(node.name, set()).update(inner.reads)
+            self.names.alters.setdefault(node.name, set()).update(inner.changes - self.imported)
 
-    def _function(self, node):
-        for part in [*getattr(node, "decorator_list", ()), *node.args.defaults]:
-            self.visit(part)
-        for part in filter(None, node.args.kw_defaults):
+    def _scope(self, node):
+        for part in _run_at_definition(node):
             self.visit(part)
         if hasattr(node, "name"):
             self.write(node.name)
         self._inside(node)
 
-    visit_FunctionDef = visit_AsyncFunctionDef = visit_Lambda = _function
-
-    def visit_ClassDef(self, node):
-        for part in [*node.decorator_list, *node.bases, *(k.value for k in node.keywords)]:
-            self.visit(part)
-        self.write(node.name)
-        self._inside(node)
+    visit_FunctionDef = visit_AsyncFunctionDef = visit_Lambda = visit_ClassDef = _scope
 
     def _comprehension(self, node):
         inner = _Function(node)
@@ -318,53 +304,64 @@ class _Function:
         if args is not None:
             every = [*args.posonlyargs, *args.args, *args.kwonlyargs, args.vararg, args.kwarg]
             own = {arg.arg for arg in every if arg is not None}
-        if isinstance(node, COMPREHENSIONS):
-            parts = list(ast.iter_child_nodes(node))
+        in_comprehension = isinstance(node, COMPREHENSIONS)
+        if in_comprehension:
+            todo = list(ast.iter_child_nodes(node))
         else:
-            parts = node.body if isinstance(node.body, list) else [node.body]
+            todo = list(node.body) if isinstance(node.body, list) else [node.body]
         shared, loads, self.changes, inner = set(), set(), set(), []
         self.given = set()  # by `:=` in a comprehension: to the scope around it
-        stack = list(parts)
-        while stack:
-            each = stack.pop()
-            if isinstance(each, SCOPES):
-                inner.append(each)
-                if hasattr(each, "name"):
-                    own.add(each.name)
-                outer = [*getattr(each, "decorator_list", ()), *getattr(each, "bases", ())]
-                if not isinstance(each, ast.ClassDef):
-                    outer += [*each.args.defaults, *filter(None, each.args.kw_defaults)]
-                stack += outer
+        while todo:
+            part = todo.pop()
+            if isinstance(part, SCOPES):
+                inner.append(part)
+                if hasattr(part, "name"):
+                    own.add(part.name)
+                todo += _run_at_definition(part)
                 continue
-            if isinstance(each, COMPREHENSIONS):
-                inner.append(each)
+            if isinstance(part, COMPREHENSIONS):
+                inner.append(part)
                 continue
-            if isinstance(each, ast.Global):
-                shared |= set(each.names)
-            elif isinstance(each, ast.NamedExpr) and isinstance(node, COMPREHENSIONS):
-                self.given.add(each.target.id)
-                stack.append(each.value)
+            if isinstance(part, ast.NamedExpr) and in_comprehension:
+                self.given.add(part.target.id)
+                todo.append(part.value)
                 continue
-            elif isinstance(each, ast.Name):
-                (loads if isinstance(each.ctx, ast.Load) else own).add(each.id)
-            elif isinstance(each, ast.alias):
-                own.add(each.asname or each.name.partition(".")[0])
-            elif isinstance(each, ast.ExceptHandler | ast.MatchAs | ast.MatchStar) and each.name:
-                own.add(each.name)
-            elif isinstance(each, ast.Attribute | ast.Subscript):
-                if not isinstance(each.ctx, ast.Load):
-                    self.changes |= _bases(each)
-            elif isinstance(each, ast.Call) and isinstance(each.func, ast.Attribute):
-                if each.func.attr in IN_PLACE:
-                    self.changes |= _bases(each.func)
-            stack += ast.iter_child_nodes(each)
+            if isinstance(part, ast.Global):
+                shared |= set(part.names)
+            elif isinstance(part, ast.Name):
+                (loads if isinstance(part.ctx, ast.Load) else own).add(part.id)
+            elif isinstance(part, ast.alias):
+                own.add(part.asname or part.name.partition(".")[0])
+            elif isinstance(part, ast.ExceptHandler | ast.MatchAs | ast.MatchStar) and part.name:
+                own.add(part.name)
+            elif isinstance(part, ast.Attribute | ast.Subscript | ast.Call):
+                self.changes |= _stored(part)
+            todo += ast.iter_child_nodes(part)
         for scope in map(_Function, inner):
-            (self.given if isinstance(node, COMPREHENSIONS) else own).update(scope.given)
+            (self.given if in_comprehension else own).update(scope.given)
             loads |= scope.reads
             self.changes |= scope.changes
         own -= shared
         self.reads = (loads | shared) - own
         self.changes = (self.changes | shared) - own
+
+
+def _run_at_definition(scope) -> list[ast.AST]:
+    """What of a function or class runs where it stands, and not in its body."""
+    parts = [*getattr(scope, "decorator_list", ()), *getattr(scope, "bases", ())]
+    parts += [keyword.value for keyword in getattr(scope, "keywords", ())]
+    if not isinstance(scope, ast.ClassDef):
+        parts += [*scope.args.defaults, *filter(None, scope.args.kw_defaults)]
+    return parts
+
+
+def _reached(name: str, steps: dict[str, set[str]]) -> set[str]:
+    """A name, and all to which steps lead from it."""
+    reached, new = set(), {name}
+    while new:
+        reached |= new
+        new = set().union(*(steps.get(n, ()) for n in new)) - reached
+    return reached
 
 
 def _bases(node) -> set[str]:

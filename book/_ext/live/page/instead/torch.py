@@ -200,7 +200,9 @@ class Tensor:
     mul_, div_ = _in_place(np.multiply), _in_place(np.divide)
     zero_ = _in_place(lambda x: 0)
     copy_ = _in_place(lambda x, y: y)
-    addmm_ = _in_place(lambda x, a, b: x + a @ b)
+    addmm_ = baddbmm_ = _in_place(lambda x, a, b: x + a @ b)
+    sigmoid_ = _in_place(lambda x: _sigmoid(x))
+    __iand__ = _in_place(np.logical_and)
 
     def __iadd__(self, other):
         return self.add_(other)
@@ -233,8 +235,8 @@ class Tensor:
         return total / (self.data.size / max(total.data.size, 1))
 
     def var(self, dim=None, correction=1, keepdim=False):
-        left = self - self.mean(dim, True)
-        squares = left.square().sum(dim, keepdim)
+        deviations = self - self.mean(dim, True)
+        squares = deviations.square().sum(dim, keepdim)
         return squares / (self.data.size / max(squares.data.size, 1) - correction)
 
     def std(self, dim=None, correction=1, keepdim=False):
@@ -252,8 +254,11 @@ class Tensor:
     def any(self, dim=None):
         return Tensor(self.data.any(_axes(dim)))
 
-    def clamp_min(self, least):
-        return _made(np.maximum(self.data, least), (self, lambda g: g * (self.data >= least)))
+    def clamp(self, min=-np.inf, max=np.inf):
+        inside = (self.data >= min) & (self.data <= max)
+        return _made(self.data.clip(min, max), (self, lambda g: g * inside))
+
+    clamp_min = clamp
 
     def reshape(self, *shape):
         shape = shape[0] if len(shape) == 1 and not isinstance(shape[0], int) else shape
@@ -377,8 +382,8 @@ class Tensor:
         return format(self.item() if not self.ndim else str(self), spec)
 
     def __repr__(self):
-        told = np.array2string(self.data, separator=", ", prefix="tensor(")
-        return f"tensor({told}{', requires_grad=True' if self.requires_grad else ''})"
+        numbers = np.array2string(self.data, separator=", ", prefix="tensor(")
+        return f"tensor({numbers}{', requires_grad=True' if self.requires_grad else ''})"
 
     def __getattr__(self, name):
         if name.startswith("_"):
@@ -407,24 +412,24 @@ def _gradients(result, wanted=None):
             seen.add(id(tensor))
             stack.append((tensor, True))
             stack += [(parent, False) for parent, _ in tensor._parents]
-    slopes, found = {id(result): np.ones_like(result.data)}, {}
+    slopes, gradients = {id(result): np.ones_like(result.data)}, {}
     for tensor in reversed(order):
         slope = slopes.pop(id(tensor))
         if tensor.is_leaf if wanted is None else id(tensor) in wanted:
-            found[id(tensor)] = tensor, slope.astype(tensor.dtype, copy=False)
+            gradients[id(tensor)] = tensor, slope.astype(tensor.dtype, copy=False)
         for parent, back in tensor._parents:
             more = back(slope)
             slopes[id(parent)] = slopes[id(parent)] + more if id(parent) in slopes else more
-    return found
+    return gradients
 
 
 def _grad(outputs, inputs, retain_graph=None):
     single = isinstance(inputs, Tensor)
     inputs = [inputs] if single else list(inputs)
-    found = _gradients(outputs, {id(tensor) for tensor in inputs})
-    if any(id(tensor) not in found for tensor in inputs):
+    gradients = _gradients(outputs, {id(tensor) for tensor in inputs})
+    if any(id(tensor) not in gradients for tensor in inputs):
         raise RuntimeError("One of the differentiated tensors was not used in the graph")
-    return tuple(Tensor(found[id(tensor)][1]) for tensor in inputs)
+    return tuple(Tensor(gradients[id(tensor)][1]) for tensor in inputs)
 
 
 class no_grad(contextlib.ContextDecorator):
@@ -521,11 +526,24 @@ def where(condition, a, b):
     )
 
 
-def mul(a, b, out=None):
-    if out is None:
-        return a * b
-    out.data[...] = a.data * _plain(b)
-    return out
+def _into(operation, by_numpy):
+    """An operation of two tensors, whose result may go where another one is."""
+
+    def function(a, b, out=None):
+        if out is None:
+            return operation(a, b)
+        by_numpy(a.data, _plain(b), out=out.data)
+        return out
+
+    return function
+
+
+mul, sub = _into(Tensor.mul, np.multiply), _into(Tensor.sub, np.subtract)
+mm = bmm = matmul = _into(_matmul, np.matmul)
+
+
+def _sigmoid_backward(gradient, activity, grad_input):
+    grad_input.data[...] = gradient.data * (activity.data * (1 - activity.data))
 
 
 def addmm(total, a, b):
@@ -542,11 +560,10 @@ def _function(name):
 
 for _name in (
     *("sigmoid", "tanh", "relu", "exp", "log", "sqrt", "square", "abs", "sin", "cos", "sum"),
-    *("mean", "var", "std", "matmul", "flatten", "reshape", "transpose", "clone", "add", "sub"),
+    *("mean", "var", "std", "flatten", "reshape", "transpose", "clone", "add"),
 ):
     globals()[_name] = _function(_name)
 
-mm = bmm = matmul  # noqa: F821
 _source = [np.random.RandomState()]
 
 
@@ -713,7 +730,9 @@ linalg = _namespace(
     cholesky_ex=_factor,
     eigh=lambda matrix: tuple(map(Tensor, np.linalg.eigh(matrix.data))),
 )
-backends = types.SimpleNamespace(mkldnn=types.SimpleNamespace(is_available=lambda: False))
+backends = _namespace("backends", mkldnn=types.SimpleNamespace(is_available=lambda: False))
+_backward = types.SimpleNamespace(grad_input=_sigmoid_backward)
+ops = types.SimpleNamespace(aten=types.SimpleNamespace(sigmoid_backward=_backward))
 
 if __name__ == "torch":
     sys.modules |= {module.__name__: module for module in (nn, optim, autograd, linalg)}

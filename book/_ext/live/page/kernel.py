@@ -7,6 +7,7 @@ order in which a reader runs cells, a page shows what it would show if it were r
 from __future__ import annotations
 
 import ast
+import concurrent.futures
 import hashlib
 import importlib
 import io
@@ -46,19 +47,19 @@ class Stream:
     encoding = "utf-8"
 
     def __init__(self, emit, kind):
-        self.emit, self.kind, self.kept = emit, kind, ""
+        self.emit, self.kind, self.line = emit, kind, ""
 
     def write(self, text):
-        self.kept += text
-        if "\n" in self.kept:
-            told, _, self.kept = self.kept.rpartition("\n")
-            self.emit(self.kind, told + "\n")
+        self.line += text
+        if "\n" in self.line:
+            lines, _, self.line = self.line.rpartition("\n")
+            self.emit(self.kind, lines + "\n")
         return len(text)
 
     def flush(self):
-        if self.kept:
-            self.emit(self.kind, self.kept)
-            self.kept = ""
+        if self.line:
+            self.emit(self.kind, self.line)
+            self.line = ""
 
     def isatty(self):
         return False
@@ -87,10 +88,10 @@ async def run(
     await _imports(tree, fetch)
     if _twin(tree) and sys.modules.get("torch") and not quiet:
         emit("twin", "")
-    found = names(source, {n for n, value in space.items() if isinstance(value, types.ModuleType)})
+    own = names(source, {n for n, value in space.items() if isinstance(value, types.ModuleType)})
     before = dict(space)
-    altered = _perhaps_altered(found)
-    prints = {n: _print_now(before[n]) for n in (altered | _reached(found)) & before.keys()}
+    altered = _perhaps_altered(own)
+    prints = {n: _print_now(before[n]) for n in (altered | _reached(own)) & before.keys()}
     loud = emit
     if quiet:
         emit = _only_problems(emit)
@@ -104,35 +105,38 @@ async def run(
     finally:
         Progress.emit = None
         if keep:
-            here = {n: v for n, v in space.items() if n in found.writes or before.get(n) is not v}
+            here = {n: v for n, v in space.items() if n in own.writes or before.get(n) is not v}
             made[name] = here | dict.fromkeys(before.keys() - space.keys(), GONE)
             # what nobody sees in its code: by a function's `global`, by `exec`
-            found.perhaps.update(n for n in here.keys() - found.writes if not n.startswith("__"))
-            known[name] = found
-            told = {n: footprint(value) for n, value in made[name].items() if value is not GONE}
+            own.perhaps.update(n for n in here.keys() - own.writes if not n.startswith("__"))
+            known[name] = own
+            own_prints = {
+                n: footprint(value) for n, value in made[name].items() if value is not GONE
+            }
             altered = sorted(_altered(before, prints, altered))
-            _keep_prints(before, made[name], told, prints)
-            more = {"prints": told, "altered": altered, "handled": _handled(made[name])}
-            loud("names", json.dumps({**found.told(), **more}))
+            _keep_prints(before, made[name], own_prints, prints)
+            more = {"prints": own_prints, "altered": altered, "handled": _handled(made[name])}
+            loud("names", json.dumps({**own.as_dict(), **more}))
 
 
-def _perhaps_altered(found: Names) -> set[str]:
+def _perhaps_altered(own: Names) -> set[str]:
     """What a cell may change in place, by its code or by a function of any cell.
 
     Nobody can compare widgets: of these only what its own code or a function that it names changes.
     """
-    altering = [(name, of) for one in (*known.values(), found) for name, of in one.alters.items()]
-    named = found.reads | found.writes
-    own = found.changes.union(*(of for name, of in altering if name in named))
-    return own.union(*(of for _, of in altering)).difference(set(_handled(space)) - own)
+    altering = [pair for cell in (*known.values(), own) for pair in cell.alters.items()]
+    named = own.reads | own.writes
+    surely = own.changes.union(*(changed for name, changed in altering if name in named))
+    every = surely.union(*(changed for _, changed in altering))
+    return every.difference(set(_handled(space)) - surely)
 
 
-def _reached(found: Names) -> set[str]:
+def _reached(own: Names) -> set[str]:
     """What a cell can come to: what it reads, and what functions of any cell read for it."""
-    reached, new = set(), found.reads - set(_handled(space))
+    reached, new = set(), own.reads - set(_handled(space))
     while new:
         reached |= new
-        carried = [one.carries.get(n, ()) for one in known.values() for n in new]
+        carried = [cell.carries.get(n, ()) for cell in known.values() for n in new]
         new = set().union(*carried) - reached
     return reached - set(_handled(space))
 
@@ -148,7 +152,7 @@ def _altered(before: dict, prints: dict, perhaps: set[str]) -> set[str]:
     What nobody can compare is taken to be changed if it goes on with each use, or if the code of
     the cell may change it: `perhaps`. If anything was, a part of it may have more names.
     """
-    found = set()
+    altered = set()
 
     def compare(name, was, value):
         prints[name] = footprint(value)
@@ -158,18 +162,18 @@ def _altered(before: dict, prints: dict, perhaps: set[str]) -> set[str]:
 
     for name, was in list(prints.items()):
         if compare(name, was, before[name]):
-            found.add(name)
-    if found:
+            altered.add(name)
+    if altered:
         others = [(n, v) for n, v in before.items() if n not in prints and id(v) in seen]
-        found.update(n for n, v in others if compare(n, seen[id(v)][1], v))
-    return found
+        altered.update(n for n, v in others if compare(n, seen[id(v)][1], v))
+    return altered
 
 
-def _keep_prints(before: dict, given: dict, told: dict, prints: dict) -> None:
+def _keep_prints(before: dict, given: dict, own_prints: dict, prints: dict) -> None:
     """Remember the footprints of values that are still to be had."""
-    for values, known_prints in ((before, prints), (given, told)):
+    for values, known_prints in ((before, prints), (given, own_prints)):
         seen.update((id(values[n]), (values[n], of)) for n, of in known_prints.items())
-    alive = {id(value) for one in made.values() for value in one.values()}
+    alive = {id(value) for names in made.values() for value in names.values()}
     for gone in seen.keys() - alive:
         del seen[gone]
 
@@ -284,8 +288,32 @@ def trange(*args, **options):
     return Progress(range(*args), **options)
 
 
+class OneThread:
+    """In place of a pool of threads: a page has one."""
+
+    def __init__(self, workers, **options):
+        pass
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        pass
+
+    @staticmethod
+    def submit(work, *given):
+        """The future of work that is done."""
+        future = concurrent.futures.Future()
+        try:
+            future.set_result(work(*given))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
 def start(pause) -> None:
-    """Take the place of `tqdm`; `pause()` lets the worker hear what the page says."""
+    """Take the place of `tqdm` and of threads; `pause()` lets the worker hear the page."""
+    concurrent.futures.ThreadPoolExecutor = OneThread
     Progress.pause = staticmethod(pause)
     for name in ("tqdm", "tqdm.auto"):
         sys.modules[name] = types.ModuleType(name)
@@ -389,8 +417,8 @@ def show(value, emit) -> None:
         leaving.append(value)
         return emit("figure", f'<div class="ddlib-figure">{value.svg}</div>')
     for kind in ("html", "svg", "latex", "markdown"):
-        told = getattr(value, f"_repr_{kind}_", None)
-        text = told() if told and not isinstance(value, type) else None
+        represent = getattr(value, f"_repr_{kind}_", None)
+        text = represent() if represent and not isinstance(value, type) else None
         if text:
             return emit("html" if kind == "svg" else kind, text)
     if hasattr(value, "savefig"):
@@ -417,8 +445,8 @@ def display(*values) -> None:
 
 def heard(text: str, buffers) -> str:
     """Take what a widget of the page says; returns the names of the widgets that this changed."""
-    told = {"number": json.loads(text)["number"]}
-    out = Stream(lambda _, said: page(json.dumps({**told, "said": said}), []), "text")
+    widget = {"number": json.loads(text)["number"]}
+    out = Stream(lambda _, line: page(json.dumps({**widget, "said": line}), []), "text")
     moved = []
     with redirect_stdout(out), redirect_stderr(out):
         try:
@@ -426,8 +454,8 @@ def heard(text: str, buffers) -> str:
         except Exception as error:
             out.write(f"{type(error).__name__}: {error}\n")
     out.flush()
-    page(json.dumps({**told, "applied": True}), [])
-    given = (each for one in (*made.values(), space) for each in one.items())
+    page(json.dumps({**widget, "applied": True}), [])
+    given = (pair for names in (*made.values(), space) for pair in names.items())
     return json.dumps(sorted({n for n, value in given if any(value is w for w in moved)}))
 
 

@@ -9,7 +9,7 @@ globalThis.follow = (() => {
 
   // For each cell: the cells above that each name comes from, and what it may change in place.
   function graph(cells) {
-    const found = cells.map(({ names }) => ({
+    const links = cells.map(({ names }) => ({
       from: new Map(),
       changes: new Set(),
       handled: new Set(names.handled),
@@ -19,7 +19,7 @@ globalThis.follow = (() => {
     function above(place, name) {
       const list = [];
       for (let k = place - 1; k >= 0; k--) {
-        if (found[k].changes.has(name) || gives(cells[k], name)) list.push(k);
+        if (links[k].changes.has(name) || gives(cells[k], name)) list.push(k);
         if (has(cells[k].names.writes, name)) break;
       }
       return list;
@@ -39,7 +39,7 @@ globalThis.follow = (() => {
     }
 
     cells.forEach(({ names, altered }, place) => {
-      const { from, changes } = found[place];
+      const { from, changes } = links[place];
       for (const name of altered ?? names.changes ?? []) changes.add(name);
       const todo = [...(names.reads ?? []), ...(altered ?? [])];
       for (let name; (name = todo.pop()) !== undefined; ) {
@@ -55,25 +55,25 @@ globalThis.follow = (() => {
         }
       }
     });
-    return found;
+    return links;
   }
 
   // Cells below that take a name from a cell: of all names that it gives, or of some.
-  function readers(cells, found, place, only) {
+  function readers(cells, links, place, only) {
     const wanted = (name) => !only || only.has(name);
     return cells.flatMap((_, k) => {
       if (k <= place) return [];
-      const takes = [...found[k].from].some(([name, list]) => list.includes(place) && wanted(name));
+      const takes = [...links[k].from].some(([name, list]) => list.includes(place) && wanted(name));
       return takes ? [k] : [];
     });
   }
 
   // All cells that follow from some, by the code alone. `only` gives names of those that changed.
-  function after(cells, found, places, only = new Map()) {
+  function after(cells, links, places, only = new Map()) {
     const marked = new Set();
     const todo = [...places].map((k) => [k, only.get(k)]);
     for (let next; (next = todo.pop()); )
-      for (const k of readers(cells, found, ...next)) {
+      for (const k of readers(cells, links, ...next)) {
         if (marked.has(k)) continue;
         marked.add(k);
         todo.push([k, undefined]);
@@ -84,19 +84,19 @@ globalThis.follow = (() => {
   // A cell above that has to run again before a cell can: its object was changed in place since,
   // by that cell itself or by one below it. `turn` tells when cells ran in this worker. A figure
   // to handle stays as the reader left it.
-  function spoiled(found, place, turn) {
-    for (const [name, list] of found[place].from) {
+  function spoiled(links, place, turn) {
+    for (const [name, list] of links[place].from) {
       const maker = list.at(-1);
-      if (maker === undefined || !turn[maker] || found[maker].handled.has(name)) continue;
+      if (maker === undefined || !turn[maker] || links[maker].handled.has(name)) continue;
       // a name that was made from itself may be the same object, or have it as a part
       const same = (k) => {
         let of = k;
-        do of = found[of].from.get(name)?.at(-1) ?? -1;
+        do of = links[of].from.get(name)?.at(-1) ?? -1;
         while (of > maker);
         return of === maker;
       };
-      for (let k = place; k < found.length; k++)
-        if (found[k].changes.has(name) && turn[k] > turn[maker] && same(k)) return { maker, name };
+      for (let k = place; k < links.length; k++)
+        if (links[k].changes.has(name) && turn[k] > turn[maker] && same(k)) return { maker, name };
     }
     return undefined;
   }
@@ -107,16 +107,16 @@ globalThis.follow = (() => {
     if (old.length !== fresh.length) return undefined;
     const named = /^([A-Za-z_]\w*(?:\s*,\s*[A-Za-z_]\w*)*)\s*=(?!=)(.*)$/;
     const code = (line) => line.replace(/#.*$/, "").trimEnd(); // a # in a string: a name too few
-    const found = new Set();
+    const names = new Set();
     for (const [k, line] of fresh.entries()) {
       const parts = named.exec(line);
-      const mentions = [...found].some((name) => new RegExp(`\\b${name}\\b`).test(code(line)));
+      const mentions = [...names].some((name) => new RegExp(`\\b${name}\\b`).test(code(line)));
       if (line !== old[k] && /["']/.test(line + old[k])) return undefined;
       if (code(line) === code(old[k]) && !mentions) continue;
       if (!parts || named.exec(old[k])?.[1] !== parts[1]) return undefined;
-      for (const name of parts[1].split(",")) found.add(name.trim());
+      for (const name of parts[1].split(",")) names.add(name.trim());
     }
-    return found;
+    return names;
   }
 
   return { graph, readers, after, spoiled, renamed };

@@ -72,8 +72,8 @@ export function host(post, busy) {
       const binary = entries.filter(([, value]) => ArrayBuffer.isView(value));
       const others = entries.filter(([, value]) => !ArrayBuffer.isView(value));
       const names = binary.map(([name]) => name);
-      const told = { number, state: Object.fromEntries(others), binary: names };
-      post(told, binary.map(([, value]) => bytesOf(value)));
+      const message = { number, state: Object.fromEntries(others), binary: names };
+      post(message, binary.map(([, value]) => bytesOf(value)));
     }
     // What Python sets; where the page has set something newer, that stands.
     function take(changes) {
@@ -93,40 +93,40 @@ export function host(post, busy) {
       return widget;
     });
     script.catch(() => {}); // it is told where the widget is shown
-    return { model, script, take, flush, emit, gone, said: "", views: new Map() };
+    return { model, script, take, flush, emit, gone, printed: "", views: new Map() };
   }
 
   // A message from Python.
   function heard({ number, made, state, binary, content, applied, said }, buffers = []) {
     if (made) models.set(number, modelOf(number, made));
-    const one = models.get(number);
-    if (!one) return;
+    const entry = models.get(number);
+    if (!entry) return;
     if (applied) {
       flying.delete(number);
-      one.flush();
-      for (const { words } of one.views.values()) words.textContent = one.said;
-      one.said = "";
+      entry.flush();
+      for (const { words } of entry.views.values()) words.textContent = entry.printed;
+      entry.printed = "";
     } else if (said !== undefined) {
-      one.said += said; // it is shown when all has come
-    } else if (content !== undefined) one.emit("msg:custom", content, buffers);
+      entry.printed += said; // it is shown when all has come
+    } else if (content !== undefined) entry.emit("msg:custom", content, buffers);
     else {
       const parts = binary.map((name, k) => [name, new DataView(buffers[k].buffer)]);
-      one.take({ ...state, ...Object.fromEntries(parts) });
+      entry.take({ ...state, ...Object.fromEntries(parts) });
     }
   }
 
   async function mount(number, place) {
-    const one = models.get(number);
+    const entry = models.get(number);
     const [el, words] = [document.createElement("div"), document.createElement("pre")];
     words.className = "live-said";
     words.setAttribute("role", "status");
     place.append(el, words);
     const view = { words, stop: undefined };
-    one.views.set(place, view);
+    entry.views.set(place, view);
     try {
-      const widget = await one.script;
-      if (!one.views.has(place)) return; // the cell has run again meanwhile
-      view.stop = await widget.render({ model: one.model, el });
+      const widget = await entry.script;
+      if (!entry.views.has(place)) return; // the cell has run again meanwhile
+      view.stop = await widget.render({ model: entry.model, el });
       el.classList.add("ddlib-widget");
     } catch (error) {
       el.className = "ddlib-widget-error";
@@ -137,14 +137,14 @@ export function host(post, busy) {
 
   // Take down what is shown in an element.
   function drop(within) {
-    for (const [number, one] of models) {
-      if (!one.views.size) continue; // not shown yet
-      for (const [place, { stop }] of one.views) {
+    for (const [number, entry] of models) {
+      if (!entry.views.size) continue; // not shown yet
+      for (const [place, { stop }] of entry.views) {
         if (!within.contains(place)) continue;
-        one.views.delete(place);
+        entry.views.delete(place);
         stop?.();
       }
-      if (one.views.size) continue;
+      if (entry.views.size) continue;
       models.delete(number);
       flying.delete(number);
       if (alive) post({ number, closed: true }, []);

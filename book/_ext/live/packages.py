@@ -1,0 +1,219 @@
+"""What a page loads: Pyodide's core from npm, wheels that its lock names, and this book's own.
+
+Each foreign file is taken by its hash, from a mirror or from Pyodide's own public address, and kept
+for the next time.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import io
+import json
+import math
+import re
+import shutil
+import subprocess
+import tarfile
+import urllib.error
+import urllib.request
+import zipfile
+from importlib.metadata import distribution
+from pathlib import Path
+
+PAGE = Path(__file__).with_name("page")  # what the page itself runs
+VERSION = "314.0.3"
+TARBALL = "sK40My6m8tmBUYtYH9au9rXUeh9x0wfahtHdOlGmJxZDsKBGKtP6KznyFB2+u/klbQTdDionR0uaVd176zVQzQ=="
+CORE = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip")
+LOCK = "pyodide-lock.json"
+CODES = ("code ", "errno ", "syscall ")  # what npm says before it says why
+PUBLIC = f"https://cdn.jsdelivr.net/pyodide/v{VERSION}/full"  # where Pyodide keeps its wheels
+WHEELS = ("numpy", "scipy", "sympy", "matplotlib", "pandas")  # and what these depend on
+PURE = {  # from this environment: what each depends on, and what is imported of it
+    "control": (["numpy", "scipy", "matplotlib"], "control"),
+    "joblib": ([], "joblib"),
+    "lazy-loader": ([], "lazy_loader"),
+    "pyyaml": ([], "yaml"),
+    "traitlets": ([], "traitlets"),
+}
+FIRST = ("numpy", "ddlib", "lazy-loader")  # before the first cell
+WIDGETS = "ddlib/widgets"  # a wheel of their own: few cells show one
+STILL = f"{WIDGETS}/still.py"  # draws what a page does not show
+
+
+class Refused(RuntimeError):
+    """Something is missing, or is not as its hash says."""
+
+
+def sha256(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def with_dependencies(packages: dict, wanted=WHEELS) -> list[str]:
+    """Names of packages of a lock, with all that they depend on."""
+    complete: list[str] = []
+    todo = list(wanted)
+    while todo:
+        name = todo.pop()
+        if name not in complete:
+            complete.append(name)
+            todo += packages[name]["depends"]
+    return sorted(complete)
+
+
+def read(mirror: str, name: str) -> bytes | None:
+    """A file of the mirror, a folder or an address; None if it has none of that name."""
+    if not re.match(r"https?://", mirror):
+        path = Path(mirror).expanduser() / name
+        return path.read_bytes() if path.is_file() else None
+    try:
+        with urllib.request.urlopen(f"{mirror.rstrip('/')}/{name}", timeout=60) as opened:
+            return opened.read()
+    except urllib.error.HTTPError:
+        return None
+    except OSError as error:  # no network, no such host, or a break on the way
+        why = getattr(error, "reason", error)
+        raise Refused(
+            f"no {name} of Pyodide {VERSION}: {mirror} cannot be reached ({why}). Name a folder or "
+            f"an address that has it by MIRROR=, or try again with a way to {PUBLIC}."
+        ) from None
+
+
+def take(entries: list[dict], mirror: str, store: Path) -> None:
+    """Wheels of a lock into a folder: all of them, or none that is not as the lock says."""
+    lacking = [
+        entry
+        for entry in entries
+        if not (store / entry["file_name"]).is_file()
+        or sha256((store / entry["file_name"]).read_bytes()) != entry["sha256"]
+    ]
+    if not lacking:
+        return
+    source = mirror or PUBLIC
+    files = f"{len(lacking)} wheels" if len(lacking) > 1 else lacking[0]["file_name"]
+    print(f"==> Taking {files} of Pyodide {VERSION} from {source}", flush=True)
+    problems, contents = [], {}
+    for entry in lacking:
+        name, wanted = entry["file_name"], entry["sha256"]
+        content = read(source, name)
+        if content is None:
+            problems.append(f"{name} is missing")
+        elif sha256(content) != wanted:
+            problems.append(f"{name} has SHA-256 {sha256(content)}, the lock wants {wanted}")
+        else:
+            contents[name] = content
+    if problems:
+        wanted = f"a folder or an address with the packages of Pyodide {VERSION} is needed"
+        raise Refused("\n    ".join([f"MIRROR={source}: {wanted}.", *problems]))
+    store.mkdir(parents=True, exist_ok=True)
+    for name, content in contents.items():
+        part = store / f"{name}.part"
+        part.write_bytes(content)
+        part.replace(store / name)
+
+
+def core(store: Path) -> None:
+    """Pyodide's core and its lock, by npm."""
+    if all((store / name).is_file() for name in (*CORE, LOCK)):
+        return
+    npm = shutil.which("npm")
+    if npm is None:
+        raise Refused("npm is missing: Pyodide's core comes by it (https://nodejs.org)")
+    store.mkdir(parents=True, exist_ok=True)
+    command = [npm, "pack", "--loglevel=error", "--fetch-retries=1", f"pyodide@{VERSION}"]
+    done = subprocess.run(command, cwd=store, capture_output=True, text=True)
+    archive = store / f"pyodide-{VERSION}.tgz"
+    if done.returncode or not archive.is_file():
+        reasons = [line.removeprefix("npm error ") for line in done.stderr.splitlines()]
+        sentences = (line for line in reasons if " " in line and not line.startswith(CODES))
+        raise Refused(
+            f"no core of Pyodide {VERSION}, which npm's registry has: npm pack pyodide@{VERSION} "
+            f"ended with “{next(sentences, 'no file')}”. Try again with a way to it (npm config "
+            f"get registry); wheels come from MIRROR= or {PUBLIC}."
+        )
+    if base64.b64encode(hashlib.sha512(archive.read_bytes()).digest()).decode() != TARBALL:
+        archive.unlink()
+        raise Refused(f"pyodide {VERSION} of npm is not the archive with SHA-512 {TARBALL}")
+    with tarfile.open(archive) as packed:
+        for name in (*CORE, LOCK):
+            (store / name).write_bytes(packed.extractfile(f"package/{name}").read())
+    archive.unlink()
+
+
+def zipped(files: dict[str, bytes]) -> bytes:
+    """A zip with the same bytes for the same files."""
+    target = io.BytesIO()
+    with zipfile.ZipFile(target, "w") as archive:
+        for name in sorted(files):
+            archive.writestr(zipfile.ZipInfo(name), files[name], zipfile.ZIP_DEFLATED)
+    return target.getvalue()
+
+
+def sources(folder: Path, under: Path) -> dict[str, bytes]:
+    """Modules of a package, their stubs, and the scripts of its widgets, by their paths."""
+    paths = [p for p in folder.rglob("*") if p.suffix in {".py", ".pyi", ".js", ".css"}]
+    return {path.relative_to(under).as_posix(): path.read_bytes() for path in paths}
+
+
+def installed(name: str) -> tuple[str, dict[str, bytes]]:
+    """Version and modules of a package of this environment, without its tests."""
+    package = distribution(name)
+    modules = (
+        path
+        for path in package.files
+        if path.suffix in {".py", ".pyi"} and not {"tests", ".."} & {*path.parts}
+    )
+    return package.version, {path.as_posix(): path.locate().read_bytes() for path in modules}
+
+
+def wheel(name: str, version: str, files: dict, depends: list, imports: str, out: Path) -> dict:
+    """Write a wheel; returns its entry for the lock."""
+    plain = name.replace("-", "_")
+    info = f"{plain}-{version}.dist-info"
+    about = {
+        f"{info}/METADATA": f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n",
+        f"{info}/WHEEL": "Wheel-Version: 1.0\nRoot-Is-Purelib: true\nTag: py3-none-any\n",
+        f"{info}/RECORD": "",
+    }
+    content = zipped({**files, **{path: text.encode() for path, text in about.items()}})
+    file_name = f"{plain}-{version}-py3-none-any.whl"
+    (out / file_name).write_bytes(content)
+    return {
+        "name": name, "version": version, "file_name": file_name, "install_dir": "site",
+        "sha256": sha256(content), "package_type": "package", "imports": [imports],
+        "depends": depends, "unvendored_tests": False,
+    }  # fmt: skip
+
+
+def write_packages(root: Path, mirror: str, store: Path, out: Path) -> list[int]:
+    """All that the worker loads, into a folder; returns megabytes, at first and in all."""
+    core(store)
+    lock = json.loads((store / LOCK).read_text(encoding="utf-8"))
+    packages = {name: lock["packages"][name] for name in with_dependencies(lock["packages"])}
+    take(list(packages.values()), mirror, store)
+    pyodide = out / "pyodide"
+    pyodide.mkdir(parents=True)
+    for name in (*CORE, *(entry["file_name"] for entry in packages.values())):
+        shutil.copyfile(store / name, pyodide / name)
+    for name, (depends, imports) in PURE.items():
+        packages[name] = wheel(name, *installed(name), depends, imports, pyodide)
+    ours = sources(root / "ddlib", root)
+    widgets = {path: ours.pop(path) for path in sorted(ours) if path.startswith(f"{WIDGETS}/")}
+    widgets[STILL] = (PAGE / "instead" / "still.py").read_bytes()
+    version, first = distribution("ddlib").version, [name for name in FIRST if name != "ddlib"]
+    for name, files, depends, imports in (
+        ("ddlib", ours, first, "ddlib"),
+        ("ddlib-widgets", widgets, ["traitlets"], WIDGETS.replace("/", ".")),
+    ):
+        packages[name] = wheel(name, version, files, depends, imports, pyodide)
+    rooms = [sources(root / "book" / name, root / "book") for name in ("workshop", "beyond")]
+    (out / "workshop.zip").write_bytes(zipped(rooms[0] | rooms[1]))
+    (pyodide / LOCK).write_text(json.dumps({**lock, "packages": packages}), encoding="utf-8")
+    shutil.copytree(PAGE, out, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
+    at_first = [
+        pyodide / name for name in (*CORE, LOCK, *(packages[n]["file_name"] for n in FIRST))
+    ]
+    every = [path for path in out.rglob("*") if path.is_file()]
+    return [
+        math.ceil(sum(path.stat().st_size for path in files) / 1e6) for files in (at_first, every)
+    ]

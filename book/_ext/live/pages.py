@@ -1,0 +1,76 @@
+"""The built site, copied, with its lessons live."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from pathlib import Path
+
+import nbformat
+from dd_reader import has_script
+from lessons import chapters
+from offers import FIRST as FIRST_PAGE, offer
+
+from live.cells import kind, live_cells
+from live.packages import Refused, write_packages
+
+DATA = re.compile(r"""["']data/([\w.-]+)["']""")
+
+
+def live_page(text: str, notebook, page: str, megabytes: list[int]) -> str:
+    """A built page with its cells marked, and with the script that makes them run."""
+    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    before, *parts = re.split(r'(?=<div class="cell )', text)
+    if len(parts) != len(code):
+        raise Refused(f"{page} has {len(parts)} cells, its notebook {len(code)}: make book first")
+    for k, cell in enumerate(code):
+        if kind(cell):
+            parts[k] = parts[k].replace("<div", f'<div data-live="{cell.id}"', 1)
+    cells = live_cells(notebook)
+    content = {
+        "cells": cells,
+        "data": sorted({name for cell in cells for name in DATA.findall(cell["source"])}),
+        "megabytes": megabytes,
+        "notebook": f"../_sources/{page}.ipynb",
+    }
+    island = json.dumps(content).replace("</", "<\\/")
+    added = (
+        '<link rel="stylesheet" href="../_static/live/live.css">'
+        '<script defer src="../_static/live/follow.js"></script>'
+        '<script defer src="../_static/live/live.js"></script>'
+        f'<script type="application/json" id="live-page">{island}</script>'
+    )
+    return "".join([before, *parts]).replace("</body>", f"{added}\n</body>", 1)
+
+
+def write(root: Path, site: Path, mirror: str, store: Path, out: Path) -> list[str]:
+    """The site with its lessons live, in a folder of its own: whole, or as it was before."""
+    if not (site / "index.html").is_file():
+        raise Refused(f"{site} has no pages: make book first")
+    part = out.with_name(f"{out.name}.part")
+    shutil.rmtree(part, ignore_errors=True)
+    try:
+        shutil.copytree(site, part)
+        folder = part / "_static" / "live"
+        megabytes = write_packages(root, mirror, store, folder)
+        pages = []
+        for path in chapters(root):
+            page = path.relative_to(root).with_suffix("").as_posix()
+            notebook = nbformat.read(path, as_version=4)
+            target = part / f"{page}.html"
+            if not target.is_file() or not has_script(notebook):
+                continue
+            text = live_page(target.read_text(encoding="utf-8"), notebook, page, megabytes)
+            target.write_text(text, encoding="utf-8")
+            pages.append(page)
+            for name in DATA.findall("\n".join(cell.source for cell in notebook.cells)):
+                (folder / "data").mkdir(exist_ok=True)
+                shutil.copyfile(root / "book" / "data" / name, folder / "data" / name)
+        if (part / FIRST_PAGE).is_file():
+            offer(part)
+        shutil.rmtree(out, ignore_errors=True)
+        part.rename(out)
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+    return pages

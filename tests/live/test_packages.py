@@ -1,0 +1,76 @@
+"""*Run this page*: what a page loads is taken by its hash, or not at all."""
+
+import hashlib
+import json
+import re
+import subprocess
+
+import chromium
+import pytest
+from book_pages import ROOT
+from live import packages
+from live.packages import PAGE, Refused, take
+from live.pages import write
+
+
+def entry(name: str) -> dict:
+    return {"file_name": name, "sha256": hashlib.sha256(name.encode()).hexdigest(), "depends": []}
+
+
+def test_only_what_the_lock_names_is_taken_and_nothing_is_left_half_done(tmp_path):
+    site, store, out = (tmp_path / name for name in ("html", "store", "live"))
+    for folder in (site, store, out):
+        folder.mkdir()
+        (folder / "index.html").write_text(f"in {folder.name}")
+    for name in (*packages.CORE, packages.LOCK):
+        (store / name).write_text(json.dumps({"packages": {n: entry(n) for n in packages.WHEELS}}))
+    before = sorted(store.iterdir())
+    (tmp_path / "numpy").write_text("numpy")
+    (tmp_path / "scipy").write_text("tampered")
+    with pytest.raises(Refused, match=r"(?s)matplotlib is missing.* scipy has SHA-256"):
+        write(ROOT, site, str(tmp_path), store, out)
+    assert sorted(store.iterdir()) == before  # not even the right one
+    assert [path.read_text() for path in tmp_path.glob("live*/*")] == ["in live"]
+
+
+def test_without_a_mirror_wheels_come_from_pyodides_address_and_stay(tmp_path, monkeypatch, capsys):
+    """With a server of this machine in its place."""
+    assert packages.VERSION in packages.PUBLIC
+    served, store = tmp_path / "served", tmp_path / "store"
+    served.mkdir()
+    for name in ("numpy", "scipy"):
+        (served / name).write_text(name)
+    with chromium.serve(served) as address:
+        monkeypatch.setattr(packages, "PUBLIC", address)
+        take([entry("numpy"), entry("scipy")], "", store)
+        assert capsys.readouterr().out.rstrip().endswith(f"{packages.VERSION} from {address}")
+        (served / "sympy").write_text("tampered")
+        with pytest.raises(Refused, match=r"sympy has SHA-256 .* the lock wants"):
+            take([entry("sympy")], "", store)
+        (store / "numpy").write_text("changed since")
+        take([entry("numpy")], "", store)
+    take([entry("numpy"), entry("scipy")], "", store)  # the server is gone, and not asked
+    assert {path.read_text() for path in store.iterdir()} == {"numpy", "scipy"}
+    with pytest.raises(Refused, match=r"^no sympy of Pyodide .* cannot be reached .* MIRROR="):
+        take([entry("numpy"), entry("sympy")], "", store)
+
+
+def test_without_npms_registry_one_sentence_says_what_is_missing(tmp_path, monkeypatch):
+    printed = "npm error code EAI_AGAIN\nnpm error errno EAI_AGAIN\nnpm error request to x failed\n"
+    ended = subprocess.CompletedProcess([], 1, "", printed)
+    monkeypatch.setattr(packages.shutil, "which", lambda name: name)
+    monkeypatch.setattr(packages.subprocess, "run", lambda *args, **how: ended)
+    with pytest.raises(Refused, match=r"^no core of Pyodide .* “request to x failed”"):
+        packages.core(tmp_path / "store")
+
+
+def test_a_widget_finds_in_a_page_what_it_imports_of_its_still():
+    """The module that draws it is not there."""
+    imports = re.compile(r"from ddlib\.widgets\.still import (.+)")
+    folders = (ROOT / "ddlib", ROOT / "book" / "workshop", ROOT / "book" / "beyond")
+    texts = (path.read_text("utf-8") for folder in folders for path in folder.rglob("*.py"))
+    wanted = {name for text in texts for line in imports.findall(text) for name in line.split(", ")}
+    there: dict = {}
+    exec((PAGE / "instead" / "still.py").read_text(encoding="utf-8"), there)
+    assert {"Still", "still_picture"} <= wanted <= there.keys()
+    assert there["still_picture"]({}, [], {}, None, "") == there["encoded"]("<svg/>") == ""
