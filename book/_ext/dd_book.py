@@ -30,7 +30,8 @@ KEPT_CACHES = 3
 READ = ("book/cards.yml", "book/claims.yml", "book/errata.yml", "book/questions.yml")
 CODE = ("ddlib", "book/workshop", "book/beyond", "requirements.txt")
 CELL_INPUTS = (*CODE, "book/results", "book/data", *READ)
-FRAME_INPUTS = (*CELL_INPUTS, "book/_ext", "_config.yml", "_toc.yml", "CITATION.cff")
+SITE = ("book/_ext", "book/_static", "_config.yml", "_toc.yml", "CITATION.cff")
+FRAME_INPUTS = (*CELL_INPUTS, *SITE)
 PAGE_INPUTS = (
     "book",
     "ddlib",

@@ -45,6 +45,8 @@ ICON_LETTER = re.compile(r"""(["'])(?:\\[ef][0-9a-f]{3}|[\ue000-\uf8ff])\1""", r
 def slim(out: Path, since: float) -> None:
     """Rewrite in place the pages of a built site that were written since then, and all styles."""
     static = out / "_static"
+    if not (static / ICON_FONT).is_file():  # no page was written, so the theme copied nothing
+        return
     icons = Icons(static / ICON_FONT)
     for pattern in UNUSED_FILES:
         for path in static.glob(pattern):

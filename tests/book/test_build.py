@@ -208,8 +208,12 @@ def test_what_changed_is_made_again_and_nothing_else(tiny):
     assert run(tiny).returncode == 0  # which stands in the contents of every page
     assert "Another title" in (tiny / "_build/html/book/other.html").read_text(encoding="utf-8")
 
+    (tiny / "book" / "variants.yml").write_text("{}")  # of which no page is made
+    assert run(tiny).returncode == 0
+
     (tiny / "book" / "_static" / "book.css").write_text("/* other style */")
     assert run(tiny).returncode == 0
+    assert "other style" in (tiny / "_build" / "html" / "_static" / "book.css").read_text()
     assert not (tiny / "book" / "runs").exists()
 
     for path in ("book/data/motion.csv", "ddlib/arm.py"):
