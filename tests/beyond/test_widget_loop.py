@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from traitlets import TraitError
 from widget_pages import assert_exact_table
 
 from beyond.chapters.widgets import loop
@@ -11,7 +10,6 @@ from beyond.studies.page import learner
 from ddlib.dynamics import CMU_DD_ARM_II, with_load
 from ddlib.effects import Effects
 from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_COULOMB, JOINT_DAMPING_VISCOUS
-from ddlib.widgets.table import _MAX_BYTES
 from workshop.report import results
 
 
@@ -28,7 +26,6 @@ def truths(load):
 
 
 def test_the_page_shows_the_committed_result_in_every_setting(widget):
-    assert widget.baked_bytes < _MAX_BYTES / 10
     assert_exact_table(widget)
     kept, rate = results.read("loop-learner")["loads"], list(loop.SPEEDS).index("ten times")
     for who in learner._LEARNERS:
@@ -41,8 +38,6 @@ def test_the_page_shows_the_committed_result_in_every_setting(widget):
         baked = widget.at_grid()
         for name, values in widget.curves.items():
             np.testing.assert_allclose(baked[name], values, atol=2e-3 * max(1.0, np.ptp(values)))
-    with pytest.raises(TraitError, match="load must be one of"):
-        widget.load = 3
 
 
 def test_errors_of_many_runs_are_those_of_one_run_alone():

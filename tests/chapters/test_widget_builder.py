@@ -146,10 +146,7 @@ def test_one_stroke_paints_across_stems(tmp_path, visit, widget):
     table = page.locator(".compared-with tbody tr")
     errors = [float(row.split("\t")[1]) for row in table.all_inner_texts()]
     assert errors == sorted(errors) and len(errors) == 8
-    press(page, "Reset to the start")
-    second = builder.starts()["Second difference"]
-    assert page.evaluate(SCORE) == pytest.approx(builder.score(second), abs=1e-9)
-    assert not table.first.is_visible() and not here.problems
+    assert not here.problems
 
 
 @pytest.mark.browser
@@ -171,17 +168,12 @@ def test_stems_are_moved_by_keys(tmp_path, visit, widget):
 
 
 @pytest.mark.browser
-def test_a_link_restores_what_was_drawn_and_code_gives_its_error(tmp_path, visit, widget, capsys):
+def test_code_gives_the_error_of_what_was_drawn(tmp_path, visit, widget, capsys):
     query = f"?builder=f:{'a1gogo' * 7},zero:1,compare:1"
     page = opened(tmp_path, visit, widget, query).page
-    wanted, score = heights(page), page.evaluate(SCORE)
-    assert page.locator(".compared-with table").is_visible() and np.ptp(wanted) > 0.3
+    assert page.locator(".compared-with table").is_visible() and np.ptp(heights(page)) > 0.3
     page.mouse.click(*place(page, 2, 0.5))
-    page.wait_for_function("([query]) => !location.search.includes(query)", arg=[query[1:]])
-    again = opened(tmp_path, visit, widget, page.evaluate("location.search")).page
-    np.testing.assert_array_equal(heights(again), heights(page))
-    assert heights(page)[2] != wanted[2] and again.evaluate(SCORE) != score
-    for here in (again, opened(tmp_path, visit, widget, "?builder=f:s3").page):
-        exec(copied(here), {})
-        printed = float(capsys.readouterr().out)
-        assert printed == pytest.approx(here.evaluate(SCORE), abs=1e-9)
+    page.evaluate(NEXT_FRAME)
+    assert heights(page)[2] == pytest.approx(0.5, abs=0.03)
+    exec(copied(page), {})
+    assert float(capsys.readouterr().out) == pytest.approx(page.evaluate(SCORE), abs=1e-9)

@@ -108,8 +108,7 @@ def test_guess_then_double_the_speed(tmp_path, visit, terms):
     after = page.locator(".terms tbody tr").nth(2).locator("td").all_inner_texts()
     values = [[float(x.replace("−", "-")) for x in row] for row in (before, after)]
     np.testing.assert_allclose(values[1], 4 * np.array(values[0]), atol=0.03)
-    page.get_by_role("button", name="Reset").click()
-    assert names(page)[1:5] == list("ABCD") and not opened.problems
+    assert not opened.problems
 
 
 @pytest.mark.browser

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from widget_pages import CALM, LESSONS, NEXT_FRAME, functions, page_of
+from widget_pages import CALM, LESSONS, NEXT_FRAME, copied, functions, page_of
 
 from ddlib.analysis import savitzky_golay, shares
 from ddlib.dynamics import CMU_DD_ARM_II
@@ -191,5 +191,6 @@ def test_a_row_is_folded_from_the_first_and_by_hand(tmp_path, visit, widget):
     look.click()
     assert look.get_attribute("aria-expanded") == "false"
     assert not page.locator(".inside").is_visible()
-    closed = visit(f"{address}?thrown-arm=motion:2,inside:0", **CALM).page
-    assert not closed.locator(".inside").is_visible() and not opened.problems
+    link = copied(page, "Link")
+    assert link == f"{address}?thrown-arm=motion:0,inside:0"
+    assert not visit(link, **CALM).page.locator(".inside").is_visible() and not opened.problems

@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from widget_pages import CALM, NEXT_FRAME, PATHS, drag, functions, page_of
+from widget_pages import CALM, NEXT_FRAME, drag, functions, page_of
 
 from ddlib.control import PID, Feedforward, closed_loop, plant
 from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM
@@ -161,14 +161,11 @@ def value_of(page, tuner, name):
 
 
 @pytest.mark.browser
-def test_drag_keys_switch_and_the_ghost(tmp_path, visit, tuner):
+def test_drag_keys_and_the_ghost(tmp_path, visit, tuner):
     opened = visit(page_of(tmp_path / "page.html", tuner), **CALM)
     page = opened.page
     assert_computed(page)
-    before = page.evaluate(PATHS)
     drag(page, page.locator("input[id$=-kp]").bounding_box(), (0.56, 0.5), (0.9, 0.5))
-    dragged = page.evaluate(PATHS)
-    assert len(before) == 8 and all(a != b for a, b in zip(before[1::2], dragged[1::2]))
     kp = value_of(page, tuner, "kp")
     assert_computed(page, kp=kp)
     assert page.evaluate(SEEN)["before"] == START  # the ghost stands where the change began
@@ -180,10 +177,7 @@ def test_drag_keys_switch_and_the_ghost(tmp_path, visit, tuner):
     page.locator("input[id$=-late]").press("ArrowRight")
     assert_computed(page, kp=kp, kd=150.0, ki=ki, late=1)
     assert page.evaluate(SEEN)["before"] == {**START, "kp": pytest.approx(kp)}
-    assert "stable" in page.locator(".verdict").inner_text()
-    page.get_by_role("switch").press("Space")
-    assert_computed(page, kp=kp, kd=150.0, ki=ki, late=1, feedforward=True)
-    assert not opened.problems
+    assert "stable" in page.locator(".verdict").inner_text() and not opened.problems
 
 
 @pytest.mark.browser

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from axe import violations
 from widget_pages import NEXT_FRAME, assert_curves, page_of, shown_values
 
 from workshop.chapters.widgets.weight import WANTED, OneWeight
@@ -54,7 +53,7 @@ def test_the_page_computes_what_python_does(tmp_path, visit, widget):
     widget.size = page.evaluate("document.querySelector('.ddlib-weight').view.get('size')")
     assert widget.weight == 8 and widget.size > 10
     assert_curves(page, widget.curves)
-    assert not violations(page) and not opened.problems
+    assert not opened.problems
 
 
 @pytest.mark.browser
@@ -74,10 +73,6 @@ def test_steps_go_downhill(tmp_path, visit, widget):
     page.locator("input[id$=weight]").press("ArrowLeft")  # by hand: it begins anew
     page.evaluate(NEXT_FRAME)
     assert words.inner_text() == "" and not page.locator(".walked").first.get_attribute("d")
-    page.get_by_role("button", name="Step", exact=True).click()
-    page.get_by_role("button", name="Reset").click()
-    page.evaluate(NEXT_FRAME)
-    assert page.evaluate(now) == -2 and words.inner_text() == ""
     assert not opened.problems
 
 

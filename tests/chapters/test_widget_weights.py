@@ -79,12 +79,6 @@ def test_its_still_has_the_diagram_and_the_curve(widget):
     assert "blobs" in widget.still_alt
 
 
-def test_networks_that_are_no_pair_are_refused(pair):
-    """A reader shows networks of their own."""
-    with pytest.raises(ValueError, match="start and trained must be one network"):
-        WeightReader(Weights.random(1, WIDTH + 2, HIDDEN)[0], pair[1], LOG_STEP)
-
-
 # In a page without a kernel
 
 
@@ -126,10 +120,6 @@ def test_press_a_row_and_subtract_the_start(tmp_path, visit, widget, pair):
     assert_shown(page, pair, "hidden 2", "elbow", True)
     page.locator("svg.hinton").first.press("ArrowUp")
     assert_shown(page, pair, "hidden 2", "shoulder", True)
-    switch.press(" ")
-    assert_shown(page, pair, "hidden 2", "shoulder", False)
-    page.get_by_role("button", name="Reset").click()
-    assert_shown(page, pair, "shoulder torque", "shoulder", False)
     assert not here.problems
 
 

@@ -126,9 +126,15 @@ def drag(page, box, *places) -> tuple[float, float]:
     return (points[-1][0] - left) / width, (points[-1][1] - top) / height
 
 
+CLIPBOARD = """() => {
+  window.copied = undefined;
+  navigator.clipboard.writeText = async (text) => { window.copied = text; };
+}"""
+
+
 def copied(page, name="Code") -> str:
     """What a widget's button copies."""
-    page.evaluate("navigator.clipboard.writeText = async (text) => { window.copied = text; }")
+    page.evaluate(CLIPBOARD)
     page.get_by_role("button", name=name).first.click()
     page.wait_for_function("window.copied")
     return page.evaluate("window.copied")

@@ -1,10 +1,19 @@
-"""Small widgets for tests: of quantities with a pad; of choices, with every kind of chart."""
+"""Small widgets for tests: of quantities with a pad; of choices, with every kind of chart; and one
+of each kind that the book shows.
+"""
 
 from __future__ import annotations
 
+import importlib
+import inspect
+import pkgutil
+from functools import cache
+
 import numpy as np
 
-from ddlib.widgets import Choice, CurveWidget, Mark, Pad, Panel, Parameter, Scalar
+from ddlib.learning import TorqueModel, TrainingSet, Weights
+from ddlib.setups import STATE_FEEDBACK, split
+from ddlib.widgets import Choice, CurveWidget, Mark, Pad, PageWidget, Panel, Parameter, Scalar
 
 T = np.linspace(0, 1, 41)
 
@@ -74,3 +83,72 @@ def make_kinds(**changes):
 
 def parts(a, b, k):
     return {"a": np.sin(a * T), "all": T * (a + b) * (1 + k), "k": np.full(2, k), "c": T**2}
+
+
+PACKAGES = "ddlib.widgets", "workshop.chapters.widgets", "beyond.chapters.widgets"
+
+
+def widget_kinds() -> list[type[PageWidget]]:
+    """Every public widget of the packages, by name."""
+    found = {}
+    for name in PACKAGES:
+        package = importlib.import_module(name)
+        for part in pkgutil.walk_packages(package.__path__, f"{name}."):
+            members = inspect.getmembers(importlib.import_module(part.name), inspect.isclass)
+            found.update(
+                pair for pair in members if issubclass(pair[1], PageWidget) and pair[0][0] != "_"
+            )
+    return [kind for _, kind in sorted(found.items()) if kind is not PageWidget]
+
+
+@cache
+def sample_of(kind: type[PageWidget]) -> PageWidget:
+    """A widget of a kind at its start; a kind that needs arguments has a line in `_arguments`."""
+    return kind(**_arguments().get(kind.__name__, {}))
+
+
+@cache
+def _arguments() -> dict[str, dict]:
+    """What kinds are made of, by their names; others need nothing."""
+    recording = STATE_FEEDBACK.record()
+    learnt, last = split(recording)
+    scalings = TrainingSet.from_recording(learnt, 7)
+    rng = np.random.default_rng(0)
+
+    def network(width, *seeds):
+        drawn = [Weights.random(3, width, hidden=4, seed=seed) for seed in seeds or (0,)]
+        weights = Weights.stack(drawn) if seeds else drawn[0]
+        return TorqueModel(weights, scalings.inputs, scalings.outputs)
+
+    models = {width: network(width) for width in (7, 11)}
+    single = {width: model[0] for width, model in models.items()}
+    pair = tuple(Weights.random(2, 7, hidden=3))
+    rows, gradients = rng.normal(size=(2, 5, 9)), rng.normal(size=(2, 2, 2, 9))
+    sums = dict(zip(("its own torques", "noise"), gradients))
+    rounds = [_guess(*rows)] * 2
+    return {
+        "CurveWidget": {
+            "function": wave, "parameters": options(), "panels": kinds(), "alt": "Waves",
+            "scalars": [Scalar("from", "Begin", "s", digits=1)], "code": "{shape}, {gain}",
+        },
+        "FilterBuilder": {"unit": np.arange(-10, 11.0) ** 2},
+        "FilterExplorer": {"models": models, "members": (0, 1), "step": 0.01},
+        "FilterFold": {"rows": {"up": rows[0, 0], "down": -rows[0, 0]}, "step": 0.01},
+        "HiddenTorque": {"recording": last},
+        "SlidingWindow": {"models": single, "recording": last},
+        "ThrownArm": {"model": single[7], "code": "motion = {motion}"},
+        "TrainingPlayer": {
+            "epochs": [0, 10, 20], "model": network(7, 1, 2, 3), "recording": recording,
+            "member": 1,
+        },
+        "UnitFromFiveStarts": {"networks": {0.1: pair, 0.5: pair[::-1]}},
+        "WeighTheArm": {"gradients": sums, "inertia": dict.fromkeys(sums, np.eye(2))},
+        "WeightReader": {"start": pair[0], "trained": pair[1], "step": 0.01},
+        "WhoseFilters": {"rounds": rounds},
+    }  # fmt: skip
+
+
+def _guess(own, other):
+    from workshop.chapters.widgets.whose import GuessRound
+
+    return GuessRound(own, other, "learnt noise", "A remark.")

@@ -35,8 +35,6 @@ SCRIPT = """([spec, baked, settings, points]) => {
     curves: settings.map((values) => curvesAt(spec, table, places(values)))
       .map((curves) => Object.values(curves).flatMap((curve) => [...curve])),
     near: settings.map((values) => spec.parameters.map((p, k) => valueNear(p, values[k], true))),
-    unfit: spec.parameters.map((p) => [undefined, "10", -1e9, 1e9].map((x) => valueNear(p, x))),
-    steps: ranged.map(([p]) => [stepsOf(p, true), stepsOf(p, false)]),
     inside: points.map((p) => insidePolygon(spec.pad?.region ?? [], ...p)),
     back: settings.map((v) => ranged.map(([p, k]) => fromFraction(p, toFraction(p, v[k])))),
     ticks: [[-4, 4, 3], [0, 1, 2], [-0.35, 7.2, 4]].map((t) => ticks(...t)),
@@ -77,8 +75,6 @@ def test_script_snaps_and_reads_as_python_does(call):
     out = computed(call, widget, chosen, points)
     assert_same(out, widget, chosen)
     np.testing.assert_allclose(out["back"], [list(v.values()) for v in chosen], atol=1e-9)
-    assert out["unfit"] == [[10, 10, 1, 100], [0.5, 0.5, 0, 2], [0, 0, -1, 1]]
-    assert out["steps"] == [[2, 200], [20, 100], [20, 100]]
     assert out["inside"] == [True, False, True, False]
     assert out["ticks"][0] == [-4, -2, 0, 2, 4] and out["ticks"][1] == [0, 0.5, 1]
     assert out["around"] == [[-5, 10], [0, 0.25], [4, 6], [0.1, 100]]

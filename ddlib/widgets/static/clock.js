@@ -4,8 +4,8 @@ import { buttonOf, make, write } from "./elements.js";
 
 // `draw(now)` shows a moment (s), words() what stands after it; with reduced motion the clock jumps
 // from one half second to the next. `rate()` is how many of its seconds pass in one; again() goes on
-// after it has changed.
-export function clockOf(view, { at, end, step, rate = () => 1 }, draw, words = () => "") {
+// after it has changed; stopped() is called when time stands still.
+export function clockOf(view, { at, end, step, rate = () => 1, stopped = () => {} }, draw, words = () => "") {
   const id = `${view.id}-time`;
   const output = make("output", { for: id });
   const slider = make("input", { id, type: "range", min: 0, max: end, step });
@@ -25,6 +25,7 @@ export function clockOf(view, { at, end, step, rate = () => 1 }, draw, words = (
     cancelAnimationFrame(frame);
     frame = 0;
     write(play, "Play");
+    stopped();
   }
   function run(moment) {
     const passed = Math.max(0, moment - from) / 1000; // a frame may bear an earlier stamp

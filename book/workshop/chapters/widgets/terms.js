@@ -133,7 +133,9 @@ extras.push((view) => {
     view.charts.forEach((c) => c.point(100 * part));
   }
   const { seconds: end } = model.get("moving");
-  const clock = clockOf(view, { at: 0.3 * end, end, step: end / 300, rate: () => end / motion.seconds }, draw);
+  const speed = () => end / motion.seconds;
+  const moments = { at: 0.3 * end, end, step: end / 300, rate: speed, stopped: view.changed };
+  const clock = clockOf(view, moments, draw);
 
   // The guesses
   const ask = make("p", { class: "ask" });
@@ -223,6 +225,5 @@ extras.push((view) => {
   follow();
   view.keep("guess", () => (first ? `${first};${second}` : ""), restore, "");
   view.keep("time", () => clock.now().toFixed(2), (text) => clock.stand(Number(text)));
-  clock.slider.addEventListener("input", view.changed);
   return () => clock.pause();
 });
