@@ -28,13 +28,14 @@ def truths(load):
 def test_the_page_shows_the_committed_result_in_every_setting(widget):
     assert_exact_table(widget)
     kept, rate = results.read("loop-learner")["loads"], list(loop.SPEEDS).index("ten times")
-    for who in learner._LEARNERS:
+    shown = {"a": 0, "b": 1, "d": 2, "F_v1": 3, "F_c1": 5}  # by place among the estimates
+    for who in kept["5"]:
         widget.load, widget.friction, widget.learner, widget.rate = 5, True, who, "ten times"
-        errors = np.minimum(kept["5"][who]["errors"][1][rate], loop._MOST_ERROR)
+        errors = np.minimum(kept["5"][who]["errors"][1][rate], 20)
         np.testing.assert_array_equal(widget.curves["error"], errors)
-        estimates = np.array(kept["5"][who]["estimates"][1][rate])[:, list(loop._SHOWN.values())]
-        for name, wanted in zip(loop._SHOWN, (estimates / truths(5)).T):
-            np.testing.assert_allclose(widget.curves[name], np.clip(wanted, *loop._BOUNDS))
+        estimates = np.array(kept["5"][who]["estimates"][1][rate])[:, list(shown.values())]
+        for name, wanted in zip(shown, (estimates / truths(5)).T):
+            np.testing.assert_allclose(widget.curves[name], np.clip(wanted, -2, 6))
         baked = widget.at_grid()
         for name, values in widget.curves.items():
             np.testing.assert_allclose(baked[name], values, atol=2e-3 * max(1.0, np.ptp(values)))

@@ -6,7 +6,8 @@ from widget_pages import assert_exact_table
 
 from beyond.chapters.widgets.rivals import _MEASURED, RivalPicker
 from beyond.studies.lineup import REFERENCE
-from beyond.studies.rivals import _TORQUES, SQUARE_POINTS
+from beyond.studies.rivals import SQUARE_POINTS
+from workshop.report import results
 
 
 @pytest.fixture(scope="module")
@@ -15,7 +16,7 @@ def picker():
 
 
 def test_curves_are_those_of_the_place_and_the_rival_on_the_page_too(picker):
-    with np.load(_TORQUES) as file:
+    with np.load(results.FOLDER / "rivals-torques.npz") as file:
         names, torque = file["names"].tolist(), file["torque"].astype(float)
     picker.shoulder, picker.elbow, picker.rival = 2, 9, "linear filter"
     run = 1 * SQUARE_POINTS + 8  # the elbow changes fastest

@@ -5,9 +5,10 @@ import pytest
 from axe import violations
 from widget_pages import NEXT_FRAME, PATHS, assert_curves, assert_exact_table, page_of
 
-from beyond.chapters.widgets.stirring import _LINES, StirringPicker
-from beyond.studies.loop.stirring import _PICKER, PLACES
+from beyond.chapters.widgets.stirring import StirringPicker
+from beyond.studies.loop.stirring import PLACES
 from ddlib.dynamics import CMU_DD_ARM_II as ARM, reach
+from workshop.report import results
 
 VALUES = "document.querySelector('.ddlib-curves').view.values"
 
@@ -18,7 +19,7 @@ def picker():
 
 
 def test_curves_are_those_of_the_place(picker):
-    with np.load(_PICKER) as file:
+    with np.load(results.FOLDER / "stirring-picker.npz") as file:
         hand, torque = file["hand"].astype(float), file["torque"].astype(float)
     place = {"distance": 0.55, "bearing": -75, "radius": 0.08, "period": 3.0, "elbow": "positive"}
     for name, value in place.items():
@@ -26,7 +27,7 @@ def test_curves_are_those_of_the_place(picker):
     at = tuple(PLACES[name].index(value) for name, value in place.items())
     curves = picker.curves
     np.testing.assert_allclose(curves["hand"], hand[(slice(None), *at)])
-    for k, line in enumerate(_LINES):
+    for k, line in enumerate(("exact behind a window", "pick and place", "circles")):
         np.testing.assert_allclose(curves[f"elbow, {line}"], torque[(k, *at)][:, 1])
     q = np.deg2rad(np.stack([curves[f"{joint} angle"] for joint in ("shoulder", "elbow")], -1))
     centre = 0.55 * np.exp(1j * np.deg2rad(-75))

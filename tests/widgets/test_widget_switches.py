@@ -12,7 +12,7 @@ from ddlib.effects import CMU_DD_ARM_II_EFFECTS, IDEAL, Delay, Effects
 from ddlib.setups import KD, KP
 from ddlib.simulation import CONTROL_STEP, record
 from ddlib.trajectories import APPENDIX_I
-from ddlib.widgets.switches import _CLOSE_UP, _TIMES, STRENGTHS, RealArmSwitches
+from ddlib.widgets.switches import STRENGTHS, RealArmSwitches
 
 NAMES = ("friction", "dead_zone", "saturation", "quantisation", "delay")
 OFF = dict.fromkeys(NAMES, "off")
@@ -47,11 +47,12 @@ def recorded(effects, times):
 )
 def test_curves_are_the_recorded_ones(switches, levels, effects):
     shown = switches.curves_at(**OFF | levels)
-    moving = _TIMES < 3  # a rest after the motion has its own start
-    error, torque = recorded(effects, _TIMES[moving])
+    whole, _, close = (np.array(panel["x"]) for panel in switches.spec["panels"])
+    moving = whole < 3  # a rest after the motion has its own start
+    error, torque = recorded(effects, whole[moving])
     np.testing.assert_allclose(shown["error"][moving], error, atol=2e-4)
     np.testing.assert_allclose(shown["torque"][moving], torque, atol=1e-3)
-    np.testing.assert_allclose(shown["close-up"], recorded(effects, _CLOSE_UP)[1], atol=1e-3)
+    np.testing.assert_allclose(shown["close-up"], recorded(effects, close)[1], atol=1e-3)
 
 
 def test_the_stronger_the_further_from_the_ideal_arm(switches):
