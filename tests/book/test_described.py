@@ -10,7 +10,6 @@ import pytest
 from book_pages import CHAPTERS, ROOT, source
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
-import dd_described
 
 FEWEST = 20  # words
 HIDDEN = {"hide-input", "remove-input", "remove-cell"}
@@ -43,26 +42,6 @@ def test_texts_say_what_is_seen():
     assert len(drawn) > 60
     assert not {(page, one["name"]): wrong for page, one in drawn if (wrong := faults(one))}
     assert len({one["alt"] for _, one in drawn}) == len(drawn)
-
-
-def test_texts_that_do_not_do_are_found():
-    caption = "The line falls, because the arm slows down. Torque over time."
-    good = "Torque over three seconds: a solid line falls from the left, and a dashed curve lies "
-    good += "below it until both meet at the right end of the axis."
-    assert not faults({"caption": caption, "alt": good})
-    assert faults({"caption": good, "alt": good}) == ["the caption again"]
-    assert len(faults({"caption": caption})) == 2
-    vague = "This picture tells readers how well everything went when somebody tried several "
-    vague += "ways of doing the same thing again and again for a long while."
-    assert faults({"caption": caption, "alt": vague}) == ["nothing to be seen"]
-
-
-def test_all_forms_of_a_figure_get_the_words():
-    form = '<svg role="figure" aria-label="A &quot;line&quot;." style="x">'
-    form += '<path aria-label="y"/></svg>'
-    both = dd_described.with_words(form + form, 'It is 1 < "2".')
-    assert both.count('aria-label="A &quot;line&quot;. It is 1 &lt; &quot;2&quot;." style') == 2
-    assert both.count('<path aria-label="y"/>') == 2
 
 
 @pytest.mark.built

@@ -9,7 +9,6 @@ import pytest
 from book_pages import ROOT
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
-import dd_lessons
 import dd_quiz
 import lessons
 
@@ -73,17 +72,6 @@ def test_what_stands_beside_a_lesson_is_found_by_its_name(two):
     )
     assert "(exercise 2, question 1)\n\n## Check yourself\n\n**1.** How many?" in text
     assert text.count("<details>") == 1 and text.endswith("</details>\n\n## On your own\n\nAfter.")
-
-
-def test_minutes_come_from_what_an_exercise_asks():
-    """By hand: 5 to think of a prediction, 2 a line of code, 1 an equation, 120 words a minute."""
-    minutes = lessons.minutes
-    assert minutes("prediction", SOLVED) == 10 and minutes("design", "") == 15
-    assert minutes("design", f"{SOLVED}\n```python\na = 1\nmine = a\n```\n") == 20
-    assert minutes("derivation", f"{SOLVED}$a = b$ and $b \\le c$ of $d$.") == 15
-    assert minutes("derivation", f"{SOLVED}{'$a = b$ ' * 6}") == 20
-    assert minutes("prediction", f"{SOLVED}{'word ' * 1200}") == 20
-    assert "10 about a derivation or an experiment" in dd_lessons.rule()
 
 
 def test_exercises_are_numbered_in_order():

@@ -34,13 +34,6 @@ def set_pieces(*pieces: nodes.Node) -> str:
     return document[0].astext()
 
 
-def test_numbers_that_were_put_in_are_set_with_the_text_around_them():
-    assert set_pieces(nodes.Text("error "), nodes.inline("", "0.3"), nodes.Text(" N m")) == (
-        f"error 0.3{NO_BREAK}N{NO_BREAK}m"
-    )
-    assert set_pieces(nodes.math("", "10^{-8}"), nodes.Text(" rad")) == f"10^{{-8}}{NO_BREAK}rad"
-
-
 def test_code_is_as_it_was_written():
     assert set_pieces(nodes.literal("", "x = -1 s"), nodes.Text("-3 s")) == (
         f"x = -1 s-3{NO_BREAK}s"

@@ -147,31 +147,6 @@ def test_what_is_written_into_a_field_is_in_the_rows(make):
         assert np.abs(weights.activity(x)[1] - before).max() > 1e-3
 
 
-def test_weights_keep_a_copy_of_what_they_are_made_of():
-    parts = [getattr(Weights.random(1, 5, 4), name).copy() for name in WEIGHT_NAMES]
-    weights = Weights(*parts)
-    kept = [matrix.copy() for matrix in (weights.rows, weights.output_weights)]
-    for part in parts:
-        part[:] = 9.0
-    for matrix, before in zip((weights.rows, weights.output_weights), kept):
-        np.testing.assert_array_equal(matrix, before)
-
-
-@pytest.mark.parametrize(
-    ("pick", "error"),
-    [
-        (lambda w: w[0][0], TypeError),
-        (lambda w: w[0, 1], IndexError),
-        (lambda w: w[:, ::-1], IndexError),  # would mix hidden units and outputs
-        (lambda w: w[3], IndexError),
-    ],
-    ids=["one", "unit", "all reversed", "none there"],
-)
-def test_an_index_picks_networks_only(pick, error):
-    with pytest.raises(error):
-        pick(Weights.random(3, 5, 4))
-
-
 # --- radians to newton metres, and files ----------------------------------------------------
 
 

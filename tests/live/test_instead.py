@@ -1,6 +1,5 @@
 """*Run this page*: what stands in for PyTorch and for widgets does as they do."""
 
-import ast
 import importlib.util
 import io
 import json
@@ -276,9 +275,3 @@ def test_sliders_move_what_they_are_tied_to(widgets, monkeypatch):
     assert ("widget", str(whole._number)) in told
     with pytest.raises(ImportError, match="Dropdown is not in this page"):
         sliders.Dropdown  # noqa: B018
-
-
-def test_a_cell_that_imports_pytorch_says_what_stands_in_for_it():
-    for source in ("import torch", "from torch import nn", "import torch.nn as n"):
-        assert kernel._twin(ast.parse(source))
-    assert not kernel._twin(ast.parse("import numpy\nfrom ddlib.learning import solve"))

@@ -126,13 +126,6 @@ def test_a_file_that_cannot_be_read_changes_nothing(reader, content):
     assert not asked and "Nothing was changed" in told and changes(tab) == {"one": "a = 10"}
 
 
-def test_a_file_with_oddities_leaves_a_page_that_works(reader):
-    tab = reader()
-    take(tab, file(a={"changes": {"one": 5, "two": ["b = 2", "b = 3"]}, "solved": 3}, b=None))
-    show(tab)
-    assert [field(tab, k).input_value() for k in (0, 1)] == ["a = 1", "b = 3"]
-
-
 def test_where_nothing_more_is_kept_it_is_told_and_a_file_has_all(reader):
     tab = reader()
     field(tab, 0).fill("a = 10")

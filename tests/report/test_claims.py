@@ -220,22 +220,6 @@ def test_printed_numbers_keep_their_digits(tmp_path):
         assert isinstance(claim.printed, str) or claim.printed == float(text)
 
 
-def test_measured_once_by_all_who_share_a_folder(monkeypatch, tmp_path):
-    from workshop.report.measures import windows
-
-    claim = next(c for c in MEASURED if c.measure == "windows.multiplications")
-    monkeypatch.setenv(claims.SHARED, str(tmp_path))
-    claims._measured.cache_clear()
-    first = claim.measured()
-    claims._measured.cache_clear()
-    monkeypatch.setattr(windows, "multiplications", lambda **_: Measured(-1.0, "again"))
-    assert claim.measured() == first and isinstance(claim.measured(), Measured)
-    monkeypatch.delenv(claims.SHARED)
-    claims._measured.cache_clear()
-    assert claim.measured() == Measured(-1.0, "again")
-    claims._measured.cache_clear()
-
-
 def test_bands_in_words(finds):
     for value, changes, words in (
         (0.5, {}, "0.50; reproduced within a factor of 1.5"),
