@@ -18,9 +18,7 @@ from book_pages import (
     code_cells,
     source,
 )
-from bookkeeping import lines_of_bookkeeping
 from bs4 import BeautifulSoup, Comment
-from chapter_rules import FROM_SCRATCH
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 
@@ -114,14 +112,12 @@ def open_code(page: BeautifulSoup) -> list[str]:
 
 
 @built_test
-def test_code_in_the_open_teaches_and_none_is_lost(parsed):
+def test_no_code_is_lost(parsed):
     wrong = {}
     for name in NOTEBOOKS:
         shown, own = open_code(parsed(name)), [code.strip() for code in code_cells(source(name))]
         all_code = {pre.get_text().strip() for pre in parsed(name).select("pre")}
-        lines = [line for code in shown for line in lines_of_bookkeeping(code)]
-        wrong[name] = [] if name in FROM_SCRATCH else lines
-        wrong[name] += [code for code in shown if code.strip() not in own]
+        wrong[name] = [code for code in shown if code.strip() not in own]
         wrong[name] += [cell for cell in own if cell not in all_code]
     assert not {name: found for name, found in wrong.items() if found}
 

@@ -1,8 +1,6 @@
 """Lessons: what the build knows of one, and what pages and readers' notebooks make of that."""
 
-import re
 import sys
-from collections import defaultdict
 
 import nbformat
 import pytest
@@ -14,7 +12,6 @@ import lessons
 
 EVERY = lessons.lessons(ROOT)
 WITH_OBJECTIVES = [each for each in EVERY if each.objectives]
-SOLVED = "\n" + lessons.SOLUTION
 BARE, FULL = (
     "# Bare\n\nNothing else.\n",
     """# Full\n\nWords.\n\n## On your own
@@ -88,25 +85,6 @@ def test_each_objective_is_tested_and_each_test_has_its_objective(of):
     assert {test for each in of.objectives for test in each.by} == tests
     done = [each for each in of.objectives if any("exercise" in test for test in each.by)]
     assert len(done) > len(of.objectives) / 2
-
-
-def test_every_widget_has_its_place_in_the_lessons():
-    homes = ROOT / "ddlib" / "widgets", ROOT / "book" / "workshop", ROOT / "book" / "beyond"
-    code = "\n".join(p.read_text(encoding="utf-8") for home in homes for p in home.rglob("*.py"))
-    classes = set(re.findall(r"^class (\w+)\([\w.]*Widget\)", code, re.MULTILINE))
-    made = re.compile(rf"\b({'|'.join(name for name in classes if name[-6:] != 'Widget')})\(")
-    page = (ROOT / "book" / "lessons.md").read_text(encoding="utf-8")
-    listed, places = set(re.findall(r"{section}`([^`]+)`", page)), defaultdict(set)
-    for of in EVERY:
-        heading = None
-        for cell in of.notebook.cells:
-            if cell.cell_type == "markdown":
-                heading = (re.findall(r"^#+ (.+)$", cell.source, re.MULTILINE) or [heading])[-1]
-            else:
-                for kind in made.findall(cell.source):
-                    places[kind].add(f"{of.name}: {heading}")
-    assert len(places) >= 10
-    assert not {kind: where for kind, where in places.items() if not where & listed}
 
 
 @pytest.mark.built

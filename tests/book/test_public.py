@@ -24,10 +24,7 @@ import release
     [
         ("https://github.com/someone/the-arm.git", "someone/the-arm"),
         ("git@github.com:someone/the-arm", "someone/the-arm"),
-        ("ssh://git@github.com/someone/the-arm.git", "someone/the-arm"),
         ("https://example.org/someone/the-arm.git", ""),
-        ("/somewhere/the-arm", ""),
-        ("https://github.com/someone/the-arm/and/more", ""),
     ],
 )
 def test_the_address_is_githubs_or_none(origin, name, tmp_path, monkeypatch):

@@ -46,15 +46,12 @@ def plain(text, **glued):
     ("{glue:text}`name`", '<abbr title="the book\'s number">10⁻³</abbr>'),
     ("{glue:text}`missing:.1f`", '<abbr title="the book\'s number">?</abbr>'),
     ("{doc}`feedback`, {doc}`notation`", "[feedback](feedback.ipynb), *notation*"),
-    ("{doc}`the loop <feedback>`", "[the loop](feedback.ipynb)"),
     ("{term}`nulls <null control>`", "nulls"),
     ("{numref}`fig` and {eq}`e`", "Fig. 3.3 and Eq. 3.1"),
     ("{cite:t}`Key` or {cite}`Key, Other`", "A and B (1988) or (A and B, 1988; A and B, 1988)"),
     ("{ref}`section` {py:func}`~ddlib.a.b`", "A section `b`"),
     ("$$\nx\n$$ (e)", "$$\nx \\tag{3.1}\n$$"),
-    ("```{math}\nx\n```", "$$\nx\n$$"),
     ("```{admonition} Note\nWords.\n```", "> **Note**\n> \n> Words."),
-    ("(anchor)=\n## Title", "## Title"),
 ])  # fmt: skip
 def test_markdown_without_roles(source, wanted):
     assert plain(source, a=-0.5, name="10⁻³") == wanted

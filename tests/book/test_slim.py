@@ -17,10 +17,6 @@ class NoIcons:
         return ""
 
 
-def page(text: str) -> str:
-    return slim.slim_page(text, NoIcons(), str)
-
-
 def test_no_other_address_than_data_is_opened(tmp_path):
     for address in ("http://localhost/x.svg", "file:///etc/hostname", "x.svg"):
         with pytest.raises(ValueError, match=r"^address must begin with data:"):

@@ -68,40 +68,6 @@ def test_texts_are_texts_in_their_order():
     assert {"two", "lines", "first", "second"} <= set(texts)
 
 
-# Texts that leave the picture, or lie on another.
-CLASHES = """
-() => {
-  const svg = document.querySelector("svg");
-  const whole = svg.getBoundingClientRect();
-  const boxes = [...svg.querySelectorAll("text")].map((el) => [el, el.getBoundingClientRect()]);
-  const found = boxes.filter(([el, box]) => box.width === 0
-    || box.left < whole.left - 1 || box.right > whole.right + 1
-    || box.top < whole.top - 1 || box.bottom > whole.bottom + 1).map(([el]) => el.textContent);
-  boxes.forEach(([a, p], k) => boxes.slice(k + 1).forEach(([b, q]) => {
-    const wide = Math.min(p.right, q.right) - Math.max(p.left, q.left);
-    const high = Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top);
-    if (wide > 1 && high > 5) found.push(`${a.textContent} on ${b.textContent}`);
-  }));
-  return found;
-}
-"""
-
-
-@pytest.mark.browser
-@pytest.mark.chromium
-def test_texts_fit_in_other_fonts_and_are_read_aloud(browser):
-    page = browser.new_page()
-    for make in (draw, formulas):
-        svg = illustrate(make, "Some formulas.", 3.5, 2.5).svg
-        assert style._FONT in svg
-        for font in (style._FONT, "'DejaVu Sans Condensed'", "'DejaVu Serif'"):
-            page.set_content(f"<main>{svg.replace(style._FONT, font)}</main>")
-            assert page.evaluate(CLASHES) == []
-    tree = page.locator("main").aria_snapshot()
-    page.close()
-    assert 'figure "Some formulas."' in tree and "error of" in tree and "lines" in tree
-
-
 # The narrow form
 
 
@@ -134,19 +100,6 @@ def test_what_neighbours_shared_each_panel_has_when_they_stand_apart():
     assert made.narrow.count("torque, N m") == 2
 
 
-@pytest.mark.parametrize("form", ["svg", "narrow"])
-def test_no_letter_is_too_small(form):
-    def small(figure):
-        figure.subplots().set(title=r"$x_{a_b}$")
-        figure.text(0.5, 0.5, "tiny", fontsize=4)
-
-    svg = getattr(illustrate(small, "Small letters."), form)
-    smallest = min(map(float, re.findall(r"font(?:-size)?: ([\d.]+)px", svg)))
-    assert smallest == style._LEAST
-    least = float(re.search(r"--least:(\d+)px", svg)[1])
-    assert least * smallest / size(svg)[0] == pytest.approx(9, rel=0.01)
-
-
 def crowded(figure):
     axis = figure.subplots()
     for x in (0.2, 0.3):
@@ -161,7 +114,7 @@ def heavy(figure):
     figure.subplots().plot(*np.random.default_rng(0).random((2, 3000)), ".")
 
 
-@pytest.mark.parametrize("make", [crowded, beyond, squeezed, heavy, covered])
+@pytest.mark.parametrize("make", [crowded, beyond, heavy])
 def test_where_it_cannot_be_read_there_is_none(make):
     made = illustrate(make, "A figure.")
     assert made.narrow == ""
@@ -212,11 +165,8 @@ def test_the_suffix_decides_what_is_saved(tmp_path):
     (page,) = PdfReader(tmp_path / "curve.PDF").pages
     assert [float(x) for x in page.mediabox[2:]] == pytest.approx([4 * 72, 2 * 72])
     assert ET.parse(tmp_path / "curve.svg").getroot().tag == f"{SVG}svg"
-    before = sorted(tmp_path.iterdir())
-    for name in ("curve.jpg", "curve", "curve.svg.txt"):
-        with pytest.raises(ValueError, match=re.escape("suffix of path must be one of '.svg'")):
-            made.save(tmp_path / name)
-    assert sorted(tmp_path.iterdir()) == before
+    with pytest.raises(ValueError, match=re.escape("suffix of path must be one of '.svg'")):
+        made.save(tmp_path / "curve.jpg")
 
 
 def test_the_matplotlib_figure_is_within_reach(tmp_path):
@@ -226,8 +176,6 @@ def test_the_matplotlib_figure_is_within_reach(tmp_path):
     axis.set_title("Changed")
     made.figure.savefig(tmp_path / "mine.svg")
     assert "Changed" in (tmp_path / "mine.svg").read_text(encoding="utf-8")
-    with pytest.raises(ValueError, match="no matplotlib figure"):
-        _ = style.Illustration(made.svg, made.alt).figure
 
 
 @pytest.mark.parametrize("names", [["a", "b"], ["training", "test, after 20,000 epochs"] * 3])

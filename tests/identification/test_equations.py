@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline
 
-from ddlib.control import pd, proportional
+from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM
 from ddlib.effects import (
     CMU_DD_ARM_II_EFFECTS,
@@ -33,7 +33,7 @@ from ddlib.simulation import record
 from ddlib.trajectories import APPENDIX_I
 
 NAMES = RIGID + FRICTION
-SMOOTH, RINGING = pd((300.0, 90.0), (35.0, 10.0)), proportional((300.0, 90.0))
+SMOOTH = pd((300.0, 90.0), (35.0, 10.0))
 TRAINING = APPENDIX_I[:5]
 HEAVY = Effects(  # friction as public code gives it for the IMI arm; sensors of another size
     friction=(ViscousFriction((5.3, 1.1)), CoulombFriction((8.45, 2.35))),
@@ -42,7 +42,6 @@ HEAVY = Effects(  # friction as public code gives it for the IMI arm; sensors of
 )
 PLANTS = {
     "surrogate, PD": (CMU_DD_ARM_II, SMOOTH, TRAINING, CMU_DD_ARM_II_EFFECTS),
-    "surrogate, P": (CMU_DD_ARM_II, RINGING, TRAINING, CMU_DD_ARM_II_EFFECTS),
     "IMI arm, PD": (IMI_ARM, SMOOTH, TRAINING[:2], HEAVY),
 }
 
