@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import re
-import sys
 
 import pytest
 from book_pages import API, ROOT, source
 
 from workshop.report.evidence.claims import load, measuring_function
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
 
 PACKAGE = ROOT / "ddlib"
 FILES = sorted(PACKAGE.rglob("*.py"))

@@ -10,14 +10,12 @@ import subprocess
 import sys
 import time
 
+import dd_book
 import nbformat
 import psutil
 import pytest
 from book_pages import ROOT
 from bs4 import BeautifulSoup
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
-import dd_book
 from dd_book import CELL_INPUTS, PAGE_INPUTS, digest, sources
 
 STAMP = "_build/html/.built-from"

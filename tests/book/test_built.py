@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import json
 import re
-import sys
 from pathlib import Path
 from urllib.parse import unquote, urldefrag, urlsplit
 
@@ -19,8 +18,6 @@ from book_pages import (
     source,
 )
 from bs4 import BeautifulSoup, Comment
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
 
 built_test = pytest.mark.built
 NOTEBOOKS = [page for page in PAGES if source(page).suffix == ".ipynb"]

@@ -1,12 +1,9 @@
 """Contents, *Next* and evidence: one order for all."""
 
-import sys
 from itertools import pairwise
 
 import pytest
-from book_pages import CHAPTERS, EVIDENCE, EVIDENCE_OF, PAGES, ROOT
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
+from book_pages import CHAPTERS, EVIDENCE, EVIDENCE_OF, PAGES
 
 
 @pytest.mark.built

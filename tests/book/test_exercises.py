@@ -1,15 +1,11 @@
 """Exercises as headings, folds with names of their own, formulas out of the way of *Tab*."""
 
-import sys
-
 import chromium
+import dd_cite
+import lessons
 import pytest
 import yaml
 from book_pages import CHAPTERS, PAGES, ROOT
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
-import dd_cite
-import lessons
 
 
 def test_the_citation_is_that_of_the_repository():

@@ -1,14 +1,10 @@
 """Lessons: what the build knows of one, and what pages and readers' notebooks make of that."""
 
-import sys
-
+import dd_quiz
+import lessons
 import nbformat
 import pytest
 from book_pages import ROOT
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
-import dd_quiz
-import lessons
 
 EVERY = lessons.lessons(ROOT)
 WITH_OBJECTIVES = [each for each in EVERY if each.objectives]

@@ -6,17 +6,15 @@ import subprocess
 import sys
 import zipfile
 
-import nbformat
-import pytest
-from book_pages import ROOT
-from packaging.requirements import Requirement
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import dd_cite
 import dd_public
 import dd_reader
 import missing
+import nbformat
+import pytest
 import release
+from book_pages import ROOT
+from packaging.requirements import Requirement
 
 
 @pytest.mark.parametrize(

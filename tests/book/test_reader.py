@@ -2,7 +2,6 @@
 
 import json
 import re
-import sys
 from types import MappingProxyType, SimpleNamespace
 
 import nbformat
@@ -10,13 +9,10 @@ import pytest
 from book_pages import ROOT, WALK
 from chapter_rules import TUTORIAL
 from chromium import HTML
-
-from ddlib.tables import Table
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
-
 from dd_reader import Plain, has_script, reader_notebook, script
 from lab import lay_out
+
+from ddlib.tables import Table
 
 ROLE = re.compile(r"\{[\w:-]+\}`[^`]*`|^(?:`{3,}|:{3,})\{", re.MULTILINE)
 NUMBER = re.compile(r'<abbr title="the book\'s number">(.*?)</abbr>')

@@ -1,12 +1,8 @@
 """What the build takes out of the pages and their styles."""
 
 import json
-import sys
 
 import pytest
-from book_pages import ROOT
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import slim
 
 

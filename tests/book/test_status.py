@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import re
-import sys
 from pathlib import Path
 
-import pytest
-from book_pages import CHAPTERS, PAGES, ROOT, source
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import dd_runtime
 import lessons
+import pytest
+from book_pages import CHAPTERS, PAGES, ROOT, source
 
 
 @pytest.mark.built

@@ -1,17 +1,14 @@
 """The book to take along: page numbers where they are asked for, an index, XML for an EPUB."""
 
 import io
-import sys
 import zipfile
 
-import pytest
-from book_pages import CHAPTERS, EVIDENCE, ROOT
-from bs4 import BeautifulSoup
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import epub
 import offers
 import pdf
+import pytest
+from book_pages import CHAPTERS, EVIDENCE, ROOT
+from bs4 import BeautifulSoup
 
 
 def test_the_walk_has_every_lesson_and_the_second_volume_the_evidence():

@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-import sys
-
-from book_pages import ROOT
-from docutils import nodes
-from docutils.utils import new_document
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import dd_typography
 from dd_typography import MINUS, NO_BREAK, typeset
+from docutils import nodes
+from docutils.utils import new_document
 
 SET = [  # ~ is a space that does not break, − a minus
     ("0.5 N m and 3 kg m² or 20 %", "0.5~N~m and 3~kg~m² or 20~%"),
