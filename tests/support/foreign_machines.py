@@ -62,7 +62,7 @@ def commands(jobs: int, ci: bool) -> dict[str, list]:
     pytest = ["-m", "pytest", "-q", "-n", jobs]
     files = [f"tests/report/test_{name}.py" for name in ("claims", "judging")]
     return {
-        "claims": [*pytest, *files, "-k", "verdicts_are or values_are"],
+        "claims": [*pytest, *files, "-k", "verdicts_are or measured_now"],
         "lessons": [*pytest, "tests/book/test_walk.py", "-k", "open_cells_run_alone"],
         "notebooks": [*pytest, "--nbmake", f"--nbmake-timeout={TIMEOUT}", *pages],
     }
