@@ -74,7 +74,7 @@ def lab(tmp_path_factory):
             yield address(home / "runtime", server, log)
         finally:
             server.terminate()
-            server.wait(30)
+            server.wait(ANSWER)
 
 
 def address(runtime: Path, server: subprocess.Popen, log: Path) -> str:
