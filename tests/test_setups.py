@@ -74,27 +74,6 @@ def test_split_is_by_trajectory(recording):
     np.testing.assert_allclose(extent, paper.APPENDIX_I_EXTENTS_DEG[5], rtol=1e-3)
 
 
-def test_cases_are_1500_of_training_and_300_of_test(recording, trained, monkeypatch):
-    """Seen where they arrive: at the trainer."""
-    seen = {}
-
-    def trainer(weights, data, **options):
-        seen.update(options, data=data)
-
-    monkeypatch.setattr("ddlib.learning.train_ensemble", trainer, raising=False)
-    train_windows(QUICK, recording, 21, 2, seed=9, progress=False)
-    data, (x6, y6) = seen["data"], seen["test"]
-    assert data.x.shape == (1500, 2, 21) and data.y.shape == (1500, 2)
-    assert x6.shape == (300, 2, 21) and y6.shape == (300, 2)
-    x, y = by_loop(recording, range(5), 21)
-    np.testing.assert_allclose(data.inputs.unscale(data.x, -2), x, atol=1e-12)
-    np.testing.assert_allclose(data.outputs.unscale(data.y), y, atol=1e-10)
-    x, y = by_loop(recording, [5], 21)
-    np.testing.assert_allclose(data.inputs.unscale(x6, -2), x, atol=1e-12)
-    np.testing.assert_allclose(data.outputs.unscale(y6), y, atol=1e-10)
-    assert (data.y.min(), data.y.max()) == pytest.approx((0.2, 0.8))
-
-
 def test_errors_are_what_their_names_say(recording, trained):
     """Each recomputed from windows made by a loop."""
     model = trained[0]

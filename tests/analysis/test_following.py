@@ -66,10 +66,3 @@ def test_gains_of_textbook_filters_are_one():
     np.testing.assert_allclose(gains(TAPS, STEP), np.eye(3), atol=1e-9)
     assert gains(np.zeros((4, 2, 2, 21)), STEP).shape == (4, 2, 2, 3)
     np.testing.assert_allclose(gains([0.0, 0.0, 1.0], 0.5), [1.0, 0.5, 0.125])
-
-
-@pytest.mark.parametrize("step", [0.001, 0.004, 0.02])
-def test_gains_are_of_the_step_that_is_given(step):
-    for order in range(3):
-        found = gains(savitzky_golay(21, order, step, degree=2), step)
-        np.testing.assert_allclose(found, np.eye(3)[order], atol=1e-9)

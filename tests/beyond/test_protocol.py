@@ -77,7 +77,5 @@ def test_what_makes_no_sense_is_refused():
     seen, exact = windows()
     with pytest.raises(ValueError, match="data must be states for Linear, got windows"):
         Linear().fit(seen)
-    with pytest.raises(ValueError, match=r"shape \(cases, 2, 11\)"):
-        Linear("windows").fit(seen).torque(seen.x[:, :1])
     with pytest.raises(NotFitted):
         Linear().torque(exact.x)

@@ -8,8 +8,7 @@ import pytest
 from beyond.studies.checks import smoothers
 from ddlib.effects import IDEAL
 from ddlib.identification import RIGID
-from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, split
-from workshop.report import results
+from ddlib.setups import STATE_FEEDBACK, split
 
 
 @pytest.fixture(scope="module")
@@ -63,15 +62,3 @@ def test_a_smoother_with_a_delay_gives_the_torque_that_was_applied(ideal):
     np.testing.assert_allclose(
         kept[smoothers._SENSOR_LATE].values, [arm.a, arm.b, arm.d], rtol=1e-4
     )
-
-
-def test_learnt_filters_are_those_of_the_study_that_tuned_them():
-    name = smoothers._LEARNT
-    ours = results.read("smoothers")["arms"]["the report's arm"]["ways"][name]
-    theirs = results.read("tuned")["rivals"][name]
-    assert ours["setting"] == theirs["setting"]
-    for part, errors in theirs["errors"].items():
-        np.testing.assert_allclose(ours["errors"][part], errors, rtol=1e-9)
-    settings = {way: len(each) for way, each in smoothers._WAYS.items()}
-    assert set(settings.values()) == {theirs["tried"][0]}
-    assert JOINT_DAMPING in [arm for arm, *_ in smoothers._ARMS.values()]

@@ -38,10 +38,7 @@ def test_faults_are_found(tmp_path, visit):
 ROWS = "".join(f"<tr><td>row {k}</td></tr>" for k in range(9))
 PALE = {
     "a word": ".pale { color: #999 }",
-    "what is behind a row": "tr:nth-child(7) { background: #777 }",
     "a row in the dark": "@media (prefers-color-scheme: dark) { tr:nth-child(7) { color: #333 } }",
-    "all together": "main { opacity: 0.5 }",
-    "a word alone": "tr:nth-child(3) td { color: #6a6a6a }",
 }
 CSS = """
   body { background: #fff }

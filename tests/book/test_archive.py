@@ -5,11 +5,9 @@ import sys
 import zipfile
 
 import pytest
+import release
 from book_pages import ROOT
 from live_pages import KEPT, MIRROR, pages, runs_through
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
-import release
 
 DEAD_END = {"server": "http://127.0.0.1:9", "bypass": "127.0.0.1"}  # a proxy that is not there
 

@@ -9,18 +9,13 @@ import signal
 import subprocess
 import sys
 import time
-from types import SimpleNamespace
 
+import dd_book
 import nbformat
 import psutil
 import pytest
 from book_pages import ROOT
 from bs4 import BeautifulSoup
-from jupyter_cache import get_cache
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
-import build
-import dd_book
 from dd_book import CELL_INPUTS, PAGE_INPUTS, digest, sources
 
 STAMP = "_build/html/.built-from"
@@ -130,31 +125,6 @@ def test_digest_does_not_see_where_the_folder_lies(tiny, tmp_path_factory):
     away = tmp_path_factory.mktemp("away") / "__pycache__" / "b [1]"
     shutil.copytree(tiny, away)
     assert digest(away, PAGE_INPUTS) == digest(tiny, PAGE_INPUTS)
-
-
-def test_progress_is_told_in_lines(monkeypatch, tmp_path):
-    """How much is done, every while and at the end; notebooks that fail are not kept."""
-    monkeypatch.setattr(build, "PAUSE", 0.1)
-    monkeypatch.setattr("os.cpu_count", lambda: 2)
-
-    def executed(notebook, cwd, timeout, allow_errors):
-        time.sleep(0.45)
-        if not notebook.cells:
-            raise RuntimeError("the kernel died")
-        return SimpleNamespace(nb=notebook, err=None, time=0.45)
-
-    monkeypatch.setattr(build, "single_nb_execution", executed)
-    (tmp_path / "book").mkdir()
-    for name in "abcd":
-        write_page(tmp_path, "# Title", f"{name} = 1", name=name)
-    nbformat.write(nbformat.v4.new_notebook(), tmp_path / "book" / "d.ipynb")
-    paths = [tmp_path / "book" / f"{name}.ipynb" for name in "abcd"]
-    cache, lines = get_cache(str(tmp_path / "cache")), []
-    assert build.execute(cache, paths, lines.append) == paths[3:]
-    assert len(lines) >= 5 and re.fullmatch(r" +0 of 4 notebooks after \d+ s", lines[0])
-    counts = [int(line.split()[0]) for line in lines]
-    assert counts == sorted(counts) and re.fullmatch(r" +3 of 4 notebooks after \d+ s", lines[-1])
-    assert build.execute(cache, paths[:3], lines.append) == []
 
 
 DRAWN = "import matplotlib.pyplot as plt\n\nplt.plot([1, 2])\nplt.show()"

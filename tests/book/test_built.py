@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import base64
-import gzip
 import json
 import re
-import sys
 from pathlib import Path
 from urllib.parse import unquote, urldefrag, urlsplit
 
 import pytest
 from book_pages import (
-    CHAPTERS,
     EVIDENCE_OF,
     PAGES,
     ROOT,
@@ -20,12 +17,7 @@ from book_pages import (
     code_cells,
     source,
 )
-from bookkeeping import lines_of_bookkeeping
 from bs4 import BeautifulSoup, Comment
-from chapter_rules import FROM_SCRATCH
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
-import dd_search
 
 built_test = pytest.mark.built
 NOTEBOOKS = [page for page in PAGES if source(page).suffix == ".ipynb"]
@@ -116,38 +108,15 @@ def open_code(page: BeautifulSoup) -> list[str]:
     return [pre.get_text() for pre in found if not pre.find_parent("details")]
 
 
-def open_answers(page: BeautifulSoup) -> list[str]:
-    """What follows a question of *On your own* and is not folded, apart from questions."""
-    section = page.select("#on-your-own > *")
-    shown = [el for el in section if el.name not in {"h2", "span"}]
-    found, asked = [], True
-    for el in shown:
-        if el.name == "details" or el.select_one(":scope > details"):
-            asked = False
-        elif el.name == "h3":
-            asked = True
-        elif not asked:
-            found.append(el.get_text())
-    return found
-
-
 @built_test
-def test_code_in_the_open_teaches_and_none_is_lost(parsed):
+def test_no_code_is_lost(parsed):
     wrong = {}
     for name in NOTEBOOKS:
         shown, own = open_code(parsed(name)), [code.strip() for code in code_cells(source(name))]
         all_code = {pre.get_text().strip() for pre in parsed(name).select("pre")}
-        lines = [line for code in shown for line in lines_of_bookkeeping(code)]
-        wrong[name] = [] if name in FROM_SCRATCH else lines
-        wrong[name] += [code for code in shown if code.strip() not in own]
+        wrong[name] = [code for code in shown if code.strip() not in own]
         wrong[name] += [cell for cell in own if cell not in all_code]
     assert not {name: found for name, found in wrong.items() if found}
-
-
-@built_test
-def test_no_answer_stands_in_the_open(parsed):
-    assert not {name: found for name in CHAPTERS if (found := open_answers(parsed(name)))}
-    assert sum(bool(parsed(name).select("#on-your-own details")) for name in CHAPTERS) >= 20
 
 
 @built_test
@@ -181,12 +150,6 @@ def test_pages_with_widgets_are_known_and_light(parsed):
             if tables or sum(sizes.values()) > (32_000 if live else 400_000):
                 heavy.append((name, model, sizes))
     assert not heavy
-
-
-@built_test
-def test_the_texts_of_the_search_are_light(built):
-    texts = (built / "_static" / dd_search.FILE).read_bytes()
-    assert 30_000 < len(gzip.compress(texts, 6)) < 100_000
 
 
 def test_text_on_canvases_can_be_read():

@@ -1,20 +1,9 @@
 """Contents, *Next* and evidence: one order for all."""
 
-import sys
 from itertools import pairwise
 
 import pytest
-from book_pages import CHAPTERS, EVIDENCE, EVIDENCE_OF, PAGES, ROOT
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
-import dd_contents
-
-
-def test_evidence_is_passed_by_and_leads_back():
-    pages = ["book/index", "book/a", "book/evidence/a", "book/evidence/b", "book/c"]
-    found = [dd_contents.neighbours(pages, page) for page in pages]
-    assert found[0] == (None, "book/a") and found[1] == ("book/index", "book/c")
-    assert found[2] == found[3] == ("book/a", "book/c") and found[4] == ("book/a", None)
+from book_pages import CHAPTERS, EVIDENCE, EVIDENCE_OF, PAGES
 
 
 @pytest.mark.built

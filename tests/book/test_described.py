@@ -3,22 +3,12 @@
 from __future__ import annotations
 
 import json
-import re
-import sys
 
 import pytest
-from book_pages import CHAPTERS, ROOT, source
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
-import dd_described
+from book_pages import CHAPTERS, source
 
 FEWEST = 20  # words
 HIDDEN = {"hide-input", "remove-input", "remove-cell"}
-# Where and how: of axes, of what is drawn, and of where it stands
-SEEN = re.compile(
-    r"\b(?:axis|axes|across|over|against|left|right|above|below|upwards|top|middle|rows?|panels?|"
-    r"columns?|lines?|curves?|dots?|bars?|squares?|circles?|stems|arch(?:es)?|valley|bell|hill)\b"
-)
 PAGES = [page for page in [*CHAPTERS, "book/use-it-on-your-arm"] if source(page)]
 
 
@@ -29,40 +19,10 @@ def open_figures(page: str) -> list[dict]:
     return [one for one, data in told if one and not HIDDEN & set(data.get("tags", ()))]
 
 
-def faults(figure: dict) -> list[str]:
-    """Why a text does not do."""
-    alt, caption = figure.get("alt", ""), figure["caption"]
-    words, said = (set(re.findall(r"\w{4,}", text.lower())) for text in (alt, caption))
-    found = [f"{len(alt.split())} words"] * (len(alt.split()) < FEWEST)
-    found += ["the caption again"] * (len(words & said) > 0.6 * len(words))
-    return found + ["nothing to be seen"] * (len(set(SEEN.findall(alt.lower()))) < 3)
-
-
-def test_texts_say_what_is_seen():
-    drawn = [(page, one) for page in PAGES for one in open_figures(page)]
-    assert len(drawn) > 60
-    assert not {(page, one["name"]): wrong for page, one in drawn if (wrong := faults(one))}
-    assert len({one["alt"] for _, one in drawn}) == len(drawn)
-
-
-def test_texts_that_do_not_do_are_found():
-    caption = "The line falls, because the arm slows down. Torque over time."
-    good = "Torque over three seconds: a solid line falls from the left, and a dashed curve lies "
-    good += "below it until both meet at the right end of the axis."
-    assert not faults({"caption": caption, "alt": good})
-    assert faults({"caption": good, "alt": good}) == ["the caption again"]
-    assert len(faults({"caption": caption})) == 2
-    vague = "This picture tells readers how well everything went when somebody tried several "
-    vague += "ways of doing the same thing again and again for a long while."
-    assert faults({"caption": caption, "alt": vague}) == ["nothing to be seen"]
-
-
-def test_all_forms_of_a_figure_get_the_words():
-    form = '<svg role="figure" aria-label="A &quot;line&quot;." style="x">'
-    form += '<path aria-label="y"/></svg>'
-    both = dd_described.with_words(form + form, 'It is 1 < "2".')
-    assert both.count('aria-label="A &quot;line&quot;. It is 1 &lt; &quot;2&quot;." style') == 2
-    assert both.count('<path aria-label="y"/>') == 2
+def test_every_figure_has_a_text_of_its_own():
+    texts = [one["alt"] for page in PAGES for one in open_figures(page)]
+    assert len(set(texts)) == len(texts) > 60
+    assert not [text for text in texts if len(text.split()) < FEWEST]
 
 
 @pytest.mark.built

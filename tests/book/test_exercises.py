@@ -1,58 +1,11 @@
 """Exercises as headings, folds with names of their own, formulas out of the way of *Tab*."""
 
-import re
-import sys
-
 import chromium
+import dd_cite
+import lessons
 import pytest
 import yaml
 from book_pages import CHAPTERS, PAGES, ROOT
-from docutils import nodes
-from docutils.utils import new_document
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
-import dd_cite
-import dd_exercises
-import lessons
-
-
-def asked(strong: str, *rest) -> nodes.paragraph:
-    return nodes.paragraph("", "", nodes.Text(""), nodes.strong("", strong), *map(nodes.Text, rest))
-
-
-def test_a_paragraph_becomes_a_heading_and_its_folds_are_named():
-    """The question keeps its words; what belongs to no exercise stays as it is."""
-    fold = f'<details class="answer">\n{lessons.SOLUTION}\n'
-    check = nodes.container(prompt_show="The check", prompt_hide="The check")
-    own = nodes.section("", nodes.title("", lessons.ON_YOUR_OWN), nodes.paragraph("", "Before."))
-    own += [asked("1. Late", " (a design). Let it."), check, nodes.raw("", fold, format="html")]
-    own += [asked("2. Twice", " (an experiment). "), nodes.raw("", fold, format="html")]
-    other = nodes.section("", nodes.title("", "Elsewhere"), asked("1. Late", " (a design)."))
-    document = new_document("page")
-    document += [other, own]
-    for transform in (dd_exercises.HeadExercises, dd_exercises.NameFolds):
-        transform(document).apply()
-    first, second = document.findall(nodes.rubric)
-    assert first["ids"] == ["exercise-1"] and isinstance(first, dd_exercises.Heading)
-    assert first.astext().startswith("Exercise 1: Late (a design)")
-    assert second.astext().startswith("Exercise 2: Twice (an experiment)")
-    assert [p.astext() for p in own.findall(nodes.paragraph)] == ["Before.", "Let it."]
-    assert check["prompt_show"] == "The check of exercise 1"
-    folds = [raw.astext() for raw in own.children if isinstance(raw, nodes.raw)]
-    assert [re.search("Solution.*(?=<)", text)[0] for text in folds] == [
-        f"Solution of exercise {k}" for k in (1, 2)
-    ]
-    assert other[1].astext() == "1. Late (a design)."
-
-
-def test_folds_of_code_are_told_apart():
-    cells = [nodes.container(prompt_show="2 lines", prompt_hide="2 lines") for _ in range(3)]
-    cells[2] += nodes.figure("", nodes.caption("", "It swings. And more."))
-    document = new_document("page")
-    document += nodes.section("", nodes.title("", "One joint"), *cells)
-    dd_exercises.NameFolds(document).apply()
-    names = [cell["prompt_show"].partition(dd_exercises.NAMED)[2] for cell in cells]
-    assert names == ["One joint", "One joint, part 2", "It swings"]
 
 
 def test_the_citation_is_that_of_the_repository():

@@ -1,7 +1,8 @@
 """Chapters with widgets in a real JupyterLab: run them, move a control, kill the kernel, go on.
 
-One chapter is run whole, as a reader does; of the others the cells that their widgets need, since
-every notebook is executed elsewhere, too.
+Five of them have every kind of widget: one that is pulled, one with a recording behind it, and
+those of weights, filters and training. One is run whole, as a reader does; of the others the cells
+that their widgets need, since every notebook is executed elsewhere, too.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import urllib.request
 from pathlib import Path
 
 import pytest
-from book_pages import ROOT, WITH_WIDGETS, code_cells, source
+from book_pages import ROOT, code_cells, source
 from needed import needed
 from reactions import SLIDER, Handle, handles
 
@@ -26,6 +27,8 @@ TOKEN = "token-of-the-test"
 STARTING, RUNNING, ANSWER = 120, 300, 60  # seconds, on a busy machine
 NOTE = "The kernel does not answer"
 WHOLE = "book/hinton-diagrams"
+OTHERS = ("index", "trajectories-and-recording", "convolution-filters", "window-networks")
+CHAPTERS = [WHOLE, *(f"book/{name}" for name in OTHERS)]
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +74,7 @@ def lab(tmp_path_factory):
             yield address(home / "runtime", server, log)
         finally:
             server.terminate()
-            server.wait(30)
+            server.wait(ANSWER)
 
 
 def address(runtime: Path, server: subprocess.Popen, log: Path) -> str:
@@ -207,39 +210,24 @@ def is_pulled(page, handle: Handle, model: str = ""):
     wait(page, "the release", lambda: handle.root.evaluate(mode) == "free", ANSWER)
 
 
-@pytest.fixture(scope="module")
-def running(lab, browser):
-    """An open JupyterLab, and the errors of its scripts."""
+@pytest.fixture
+def opened(lab, browser):
+    """JupyterLab with nothing open; its scripts make no errors."""
     context = browser.new_context(viewport={"width": 1400, "height": 900})
     context.set_default_timeout(1000 * STARTING)
     context.add_init_script(path=ROOT / "tests" / "support" / "lab.js")
     page = context.new_page()
     errors = []
     page.on("pageerror", lambda error: errors.append(str(error)))
-    enter(page, lab)
-    yield page, errors
-    context.close()
-
-
-def enter(page, lab: str):
-    """JupyterLab with nothing open."""
     page.goto(f"{lab}lab?token={TOKEN}&reset")
     page.wait_for_selector("#jp-main-dock-panel")
-
-
-@pytest.fixture
-def opened(running, lab):
-    """The page, with nothing open in it before and after; its scripts make no errors."""
-    page, errors = running
-    if page.locator(".jp-Dialog, .jp-Notebook").count():  # what another test has left
-        enter(page, lab)
-    errors.clear()
     yield page
     page.evaluate("lab.close()")
     assert not errors
+    context.close()
 
 
-@pytest.mark.parametrize("name", WITH_WIDGETS)
+@pytest.mark.parametrize("name", CHAPTERS)
 def test_widgets_of_a_chapter_live_in_the_lab(name, lab, opened):
     """With a kernel, and when it is gone."""
     page = opened

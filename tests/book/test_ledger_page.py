@@ -27,13 +27,6 @@ def shown(page) -> int:
     return page.locator("details.card-of-rows[data-verdict]:not([data-verdict='']):visible").count()
 
 
-def test_the_page_is_at_most_ten_screens_tall(ledger):
-    page = ledger()
-    page.set_viewport_size({"width": 1280, "height": 800})
-    assert shown(page) == CARDS
-    assert page.evaluate("document.documentElement.scrollHeight") <= 8000
-
-
 def test_signs_of_a_grid_open_their_rows(ledger):
     page = ledger("#card-saturated")
     sign = page.locator("#card-saturated[open] .claim-grid a").nth(3)

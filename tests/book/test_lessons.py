@@ -1,21 +1,13 @@
 """Lessons: what the build knows of one, and what pages and readers' notebooks make of that."""
 
-import re
-import sys
-from collections import defaultdict
-
+import dd_quiz
+import lessons
 import nbformat
 import pytest
 from book_pages import ROOT
 
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
-import dd_lessons
-import dd_quiz
-import lessons
-
 EVERY = lessons.lessons(ROOT)
 WITH_OBJECTIVES = [each for each in EVERY if each.objectives]
-SOLVED = "\n" + lessons.SOLUTION
 BARE, FULL = (
     "# Bare\n\nNothing else.\n",
     """# Full\n\nWords.\n\n## On your own
@@ -75,17 +67,6 @@ def test_what_stands_beside_a_lesson_is_found_by_its_name(two):
     assert text.count("<details>") == 1 and text.endswith("</details>\n\n## On your own\n\nAfter.")
 
 
-def test_minutes_come_from_what_an_exercise_asks():
-    """By hand: 5 to think of a prediction, 2 a line of code, 1 an equation, 120 words a minute."""
-    minutes = lessons.minutes
-    assert minutes("prediction", SOLVED) == 10 and minutes("design", "") == 15
-    assert minutes("design", f"{SOLVED}\n```python\na = 1\nmine = a\n```\n") == 20
-    assert minutes("derivation", f"{SOLVED}$a = b$ and $b \\le c$ of $d$.") == 15
-    assert minutes("derivation", f"{SOLVED}{'$a = b$ ' * 6}") == 20
-    assert minutes("prediction", f"{SOLVED}{'word ' * 1200}") == 20
-    assert "10 about a derivation or an experiment" in dd_lessons.rule()
-
-
 def test_exercises_are_numbered_in_order():
     numbers = {each.name: [exercise.number for exercise in each.exercises] for each in EVERY}
     assert sum(map(bool, numbers.values())) >= 20
@@ -100,25 +81,6 @@ def test_each_objective_is_tested_and_each_test_has_its_objective(of):
     assert {test for each in of.objectives for test in each.by} == tests
     done = [each for each in of.objectives if any("exercise" in test for test in each.by)]
     assert len(done) > len(of.objectives) / 2
-
-
-def test_every_widget_has_its_place_in_the_lessons():
-    homes = ROOT / "ddlib" / "widgets", ROOT / "book" / "workshop", ROOT / "book" / "beyond"
-    code = "\n".join(p.read_text(encoding="utf-8") for home in homes for p in home.rglob("*.py"))
-    classes = set(re.findall(r"^class (\w+)\([\w.]*Widget\)", code, re.MULTILINE))
-    made = re.compile(rf"\b({'|'.join(name for name in classes if name[-6:] != 'Widget')})\(")
-    page = (ROOT / "book" / "lessons.md").read_text(encoding="utf-8")
-    listed, places = set(re.findall(r"{section}`([^`]+)`", page)), defaultdict(set)
-    for of in EVERY:
-        heading = None
-        for cell in of.notebook.cells:
-            if cell.cell_type == "markdown":
-                heading = (re.findall(r"^#+ (.+)$", cell.source, re.MULTILINE) or [heading])[-1]
-            else:
-                for kind in made.findall(cell.source):
-                    places[kind].add(f"{of.name}: {heading}")
-    assert len(places) >= 10
-    assert not {kind: where for kind, where in places.items() if not where & listed}
 
 
 @pytest.mark.built

@@ -6,18 +6,15 @@ import subprocess
 import sys
 import zipfile
 
-import nbformat
-import pytest
-import yaml
-from book_pages import ROOT
-from packaging.requirements import Requirement
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import dd_cite
 import dd_public
 import dd_reader
 import missing
+import nbformat
+import pytest
 import release
+from book_pages import ROOT
+from packaging.requirements import Requirement
 
 
 @pytest.mark.parametrize(
@@ -25,10 +22,7 @@ import release
     [
         ("https://github.com/someone/the-arm.git", "someone/the-arm"),
         ("git@github.com:someone/the-arm", "someone/the-arm"),
-        ("ssh://git@github.com/someone/the-arm.git", "someone/the-arm"),
         ("https://example.org/someone/the-arm.git", ""),
-        ("/somewhere/the-arm", ""),
-        ("https://github.com/someone/the-arm/and/more", ""),
     ],
 )
 def test_the_address_is_githubs_or_none(origin, name, tmp_path, monkeypatch):
@@ -56,11 +50,6 @@ def test_buttons_lead_where_the_address_says():
     assert edit == "https://github.com/someone/the-arm/edit/main/book/feedback.ipynb"
     assert colab.endswith("/github/someone/the-arm/blob/notebooks/feedback.ipynb")
     assert len(dd_public.links("someone/the-arm", "book/status", "book/status.md", False)) == 2
-
-
-def test_the_map_names_every_page():
-    text = dd_public.map_of(["book/b&c", "book/a"], "https://x.example/")
-    assert text.index("https://x.example/book/a.html") < text.index("book/b&amp;c.html</loc>")
 
 
 def test_only_what_is_absent_is_installed():
@@ -166,18 +155,3 @@ def test_an_incomplete_release_leaves_nothing(tagged):
     with pytest.raises(FileNotFoundError, match=r"walk\.pdf.* live/index\.html"):
         release.collect(tagged, tagged / "dist")
     assert not list(tagged.glob("*dist"))
-
-
-def test_a_release_lists_what_it_holds(tmp_path):
-    """As an RO-Crate: it says what it is about, and names each file, author and licence."""
-    cited = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
-    (tmp_path / "walk.pdf").write_bytes(b"%PDF")
-    graph = release.crate(cited, [tmp_path / "walk.pdf"])["@graph"]
-    by = {one["@id"]: one for one in graph}
-    assert len(by) == len(graph) and by[release.CRATE]["about"] == {"@id": "./"}
-    whole = by["./"]
-    assert whole["name"] == cited["title"] and whole["version"] == str(cited["version"])
-    for kind in ("author", "license", "hasPart"):
-        assert whole[kind] and all(one["@id"] in by for one in whole[kind])
-    pdf = by["walk.pdf"]
-    assert pdf["encodingFormat"] == "application/pdf" and pdf["contentSize"] == "4"

@@ -1,13 +1,9 @@
 """Check yourself: what is asked, and how a page takes answers."""
 
-import sys
-
 import prose
 import pytest
 from axe import violations_in
 from book_pages import ROOT, WALK
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
 from lessons import questions
 
 ASKED = {page: asked for page in WALK if (asked := questions(ROOT, page))}

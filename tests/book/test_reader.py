@@ -2,7 +2,6 @@
 
 import json
 import re
-import sys
 from types import MappingProxyType, SimpleNamespace
 
 import nbformat
@@ -10,13 +9,10 @@ import pytest
 from book_pages import ROOT, WALK
 from chapter_rules import TUTORIAL
 from chromium import HTML
-
-from ddlib.tables import Table
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
-
 from dd_reader import Plain, has_script, reader_notebook, script
 from lab import lay_out
+
+from ddlib.tables import Table
 
 ROLE = re.compile(r"\{[\w:-]+\}`[^`]*`|^(?:`{3,}|:{3,})\{", re.MULTILINE)
 NUMBER = re.compile(r'<abbr title="the book\'s number">(.*?)</abbr>')
@@ -46,15 +42,12 @@ def plain(text, **glued):
     ("{glue:text}`name`", '<abbr title="the book\'s number">10⁻³</abbr>'),
     ("{glue:text}`missing:.1f`", '<abbr title="the book\'s number">?</abbr>'),
     ("{doc}`feedback`, {doc}`notation`", "[feedback](feedback.ipynb), *notation*"),
-    ("{doc}`the loop <feedback>`", "[the loop](feedback.ipynb)"),
     ("{term}`nulls <null control>`", "nulls"),
     ("{numref}`fig` and {eq}`e`", "Fig. 3.3 and Eq. 3.1"),
     ("{cite:t}`Key` or {cite}`Key, Other`", "A and B (1988) or (A and B, 1988; A and B, 1988)"),
     ("{ref}`section` {py:func}`~ddlib.a.b`", "A section `b`"),
     ("$$\nx\n$$ (e)", "$$\nx \\tag{3.1}\n$$"),
-    ("```{math}\nx\n```", "$$\nx\n$$"),
     ("```{admonition} Note\nWords.\n```", "> **Note**\n> \n> Words."),
-    ("(anchor)=\n## Title", "## Title"),
 ])  # fmt: skip
 def test_markdown_without_roles(source, wanted):
     assert plain(source, a=-0.5, name="10⁻³") == wanted

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from pathlib import PurePosixPath
 from urllib.parse import unquote, urlsplit
 
 import pytest
@@ -43,13 +42,6 @@ def below(root: str, url: str) -> str:
     home, path = (unquote(urlsplit(address).path) for address in (root, url))
     assert path.startswith(f"{home}/"), url
     return path.removeprefix(home)
-
-
-@pytest.mark.parametrize("home", ["/tmp/book/_build/html", "/Übung (1)/a b/book/html"])
-def test_the_folder_of_the_site_is_no_part_of_a_page(home):
-    for root in (PurePosixPath(home).as_uri(), f"file://{home}", "http://127.0.0.1:8000"):
-        assert below(root, f"{root}/search.html?q=jerk") == "/search.html"
-        assert below(root, f"{root}/book/feedback.html") == "/book/feedback.html"
 
 
 @pytest.mark.browser

@@ -3,51 +3,12 @@
 from __future__ import annotations
 
 import re
-import sys
 from pathlib import Path
 
-import pytest
-from book_pages import CHAPTERS, PAGES, ROOT, source
-
-from workshop.chapters import status
-from workshop.report import results
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import dd_runtime
 import lessons
-
-PAIR = {
-    "group": "Training",
-    "what": "window 21",
-    "ours": {"name": "ensemble", "seconds": 2.5e-5},
-    "other": {"name": "loop", "seconds": 4.5e-4},
-    "ratio": 18.0,
-    "at least": 8.0,
-    "details": {"share of the rate": 0.423, "largest error, rad": 2e-7, "operations": 3},
-}
-LIMIT = {"group": "Time", "what": "book", "value": 130.0, "unit": "s", "at most": 120.0}
-MISSING = {"group": "Training", "what": "MuJoCo", "not measured": "pip install .[bench]"}
-
-
-def plain(rows) -> list[list[str]]:
-    return [[cell.replace("\N{NO-BREAK SPACE}", " ") for cell in row] for row in rows]
-
-
-def test_every_group_has_its_table(monkeypatch):
-    """Pairs have both times; what is not measured stays."""
-    made = {"date": "2026-01-31", "processor": "X", "cores": 2, "load before": None}
-    made |= {"python": "3.11", "versions": {"numpy": "2.4"}, "seconds": 9.0}
-    planted = {"benchmarks": {"made by": made, "rows": [PAIR, LIMIT, MISSING]}}
-    monkeypatch.setattr(results, "read", planted.__getitem__)
-    assert "2026-01-31: X, 2 cores, Python 3.11, numpy 2.4; 9 s" in status.benchmark_machine()
-    tables = status.benchmarks()
-    assert plain(tables.pop("Time").rows) == [["book", "130 s", "≤ 120: missed"]]
-    (table,) = tables.values()
-    assert plain([table.header, *table.rows]) == [
-        ["what", "ensemble", "loop", "ratio", "share of the rate", "largest error, rad", "target"],
-        ["window 21", "25.0 µs", "450 µs", "18.0 ×", "42%", "2.00 · 10⁻⁷", "≥ 8.0: met"],
-        ["MuJoCo", "–", "–", "–", "–", "–", "not measured: pip install .[bench]"],
-    ]
+import pytest
+from book_pages import CHAPTERS, PAGES, ROOT, source
 
 
 @pytest.mark.built

@@ -1,18 +1,14 @@
 """The book to take along: page numbers where they are asked for, an index, XML for an EPUB."""
 
 import io
-import sys
 import zipfile
 
-import pytest
-from book_pages import CHAPTERS, EVIDENCE, ROOT
-from bs4 import BeautifulSoup
-from pypdf import PdfReader, PdfWriter
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import epub
 import offers
 import pdf
+import pytest
+from book_pages import CHAPTERS, EVIDENCE, ROOT
+from bs4 import BeautifulSoup
 
 
 def test_the_walk_has_every_lesson_and_the_second_volume_the_evidence():
@@ -64,25 +60,6 @@ def test_page_numbers_are_filled_in_and_an_index_names_each_once(browser, tmp_pa
         )
     assert told == ("null 7", ["7", "7", "000"])  # the index itself has no number here
     assert headings == ["Contents", "I & II", "A", "B", "Index"]
-
-
-def test_the_index_leaves_out_what_is_everywhere():
-    pages = [{"terms": [("window", f"w{k}")] + [("null", "n")] * (k == 1)} for k in range(20)]
-    assert pdf.index(pages) == [("null", ["n"])]
-    assert {"acceleration filter", "mass matrix", "backlash"} <= set(pdf.words(ROOT))
-
-
-def test_an_outline_has_no_title_twice():
-    writer, headings = PdfWriter(), ["1. Dynamics", "1.1. Change this", "1.2. Go on"]
-    writer.add_blank_page(100, 100)
-    above = writer.add_outline_item(title="1. 1. DynamicsDynamics", page_number=0)
-    writer.add_outline_item(title="1.1. Change this", page_number=0, parent=above)
-    writer.add_outline_item(title="1.2. 1.2. Go onGo on", page_number=0)
-    writer.add_outline_item(title="Nobody's", page_number=0)
-    pdf.titled(writer.root_object["/Outlines"].get_object().get("/First"), headings)
-    first, below, *others = PdfReader(writer.write(io.BytesIO())[1]).outline
-    titles = [first.title, below[0].title, *(entry.title for entry in others)]
-    assert titles == ["1. Dynamics", "1.1. Change this", "1.2. Go on", "Nobody's"]
 
 
 def test_a_site_offers_what_lies_in_it(tmp_path):

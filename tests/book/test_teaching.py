@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import re
-import sys
 from urllib.parse import parse_qs, unquote, urlsplit
 
+import dd_lessons
 import prose
 import pytest
 from book_pages import ROOT, code_cells
-from needed import needed
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
-import dd_lessons
 from lessons import entries, questions
+from needed import needed
 
 LECTURES = entries(ROOT, "lectures")
 ROWS = [(name, k, row) for name, told in LECTURES.items() for k, row in enumerate(told["rows"], 1)]

@@ -3,8 +3,8 @@
 import ast
 
 import pytest
-from book_pages import LESSONS, ROOT, WALK
-from chapter_rules import CHANGE_THIS, SHAPE, TUTORIAL, tags, words
+from book_pages import ROOT, WALK
+from chapter_rules import CHANGE_THIS, SHAPE, TUTORIAL, tags
 from nine_answers import Nine, wrong
 from open_cells import CHANGES, SHORT, execute, exercises, imports, lesson, run
 
@@ -19,10 +19,6 @@ STANDARD = {"collections", "dataclasses", "fractions", "itertools", "math", "tim
 @pytest.mark.parametrize("rule", SHAPE, ids=lambda rule: rule.__name__)
 def test_lessons_have_the_shape(rule):
     assert not {page: wrong for page in (*WALK, TUTORIAL) if (wrong := rule(lesson(page)))}
-
-
-def test_lessons_are_short_together():
-    assert sum(words(lesson(page)) for page in LESSONS) <= 28_000
 
 
 @pytest.mark.parametrize("page", WALK)

@@ -70,14 +70,6 @@ def test_counts_by_formula(bits):
     assert one.depth == half.depth == 2 and pairs.depth == 2 * int(np.ceil(np.log2(bits)))
 
 
-def test_the_counters_units_are_binary_digits():
-    x = patterns(6)
-    digits = NETWORKS["binary counter"](6).activity(x)
-    for row, total in zip(digits, x.sum(1)):
-        assert "".join(str(int(d)) for d in row[:-1]) == f"{total:03b}"[:-1]
-        assert row[-1] == 1 - total % 2
-
-
 def test_learning_finds_exclusive_or_and_says_when():
     weights, epochs = learn(2, 2, members=4, epochs=600, every=10)
     assert isinstance(weights, Weights) and len(weights) == 4

@@ -87,7 +87,7 @@ def test_half_of_the_inertia_is_left_where_the_penalty_is_the_variance(capsys):
         assert judged(inertia_in_the_weights, answer, *given, capsys=capsys).startswith(begins)
 
 
-@pytest.mark.parametrize("width", [5, 7, 9, 11, 13, 21, 101])
+@pytest.mark.parametrize("width", [5, 11, 101])
 def test_small_weights_can_be_had_at_every_window(width, capsys):
     """By the lesson's blocks; what is least is a half of the parabola's in long windows."""
     s = np.arange(width) - width // 2

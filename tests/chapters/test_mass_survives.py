@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from pictures import check_sound
 from widget_pages import assert_exact_table
 
 from ddlib.analysis import gains
@@ -45,13 +44,6 @@ def test_half_of_the_mass_is_found_between_the_penalties(study):
 def test_the_networks_mass_is_a_share_of_the_arms(study):
     share = excitation.mass_of_networks("quick")
     assert np.isclose(share.value, 1 / 3) and "0.10" in share.text
-
-
-def test_figure_is_sound_and_its_words_have_the_numbers(study):
-    shown = {"slowly": ("slow", 0.0), "quickly": ("quick", 0.0)}
-    words = excitation.described(shown)
-    assert "networks 2.0 after 20,000 epochs" in words
-    check_sound(excitation.mass_survives(shown, words))
 
 
 def test_leaving_out_the_start_moves_the_motion():

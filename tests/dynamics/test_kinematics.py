@@ -42,12 +42,6 @@ def test_jacobian_is_the_derivative(q, qd):
     np.testing.assert_allclose(jacobian(ARM, q) @ qd, numeric, atol=1e-7)
 
 
-def test_bad_arguments_are_refused():
-    for bad in ((L1 + L2 + 0.01, 0.0), (0.0, 0.0)):
-        with pytest.raises(Unreachable, match=r"hand must be .* m from the shoulder"):
-            inverse_kinematics(ARM, bad)
-
-
 def test_circles_of_many_kinds_at_any_pace():
     """Radii, paces and directions differ by run; derivatives by finite differences."""
     t = np.linspace(0.0, 1.0, 2001)

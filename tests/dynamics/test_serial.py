@@ -177,6 +177,3 @@ def test_torque_is_linear_in_ten_parameters_of_each_link(name):
     tau = arm.inverse_dynamics(*motion)
     product = regressor(arm, *motion) @ values
     np.testing.assert_allclose(product, tau, rtol=0, atol=1e-11 * np.abs(tau).max())
-
-
-# --- shapes and refusals ----------------------------------------------------------------

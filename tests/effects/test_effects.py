@@ -7,7 +7,6 @@ from hypothesis import given, settings, strategies as st
 from ddlib.effects import (
     Backlash,
     Delay,
-    FlexibleJoint,
     Noise,
     Quantisation,
 )
@@ -85,6 +84,3 @@ def test_play_by_hand_per_joint_and_without_gap():
     x = np.array([0.0, 0.4, 1.0, 0.6, 0.2, -0.5, 0.0, 0.4])
     np.testing.assert_allclose(play(x, 1.0), [0, 0, 0.5, 0.5, 0.5, 0.0, 0.0, 0.0])
     np.testing.assert_array_equal(play(x, 0.0), x)
-
-
-SHAFT = FlexibleJoint((2e4, 6e3), (0.4, 0.15))

@@ -148,9 +148,3 @@ def test_a_row_gets_a_frame(unit, joint):
         for p in inside
     )
     np.testing.assert_allclose(found, np.sort(rows[unit, joint]) / rest.largest)
-
-
-@diagrams
-def test_an_ensemble_is_no_network(diagram, width):
-    with pytest.raises(ValueError, match="weights must be of one network"):
-        diagram(Weights.random(3, width))

@@ -1,6 +1,5 @@
 """The house style: SVG that may stand in any page, in light and dark, and be read aloud."""
 
-import io
 import re
 import xml.etree.ElementTree as ET
 
@@ -69,61 +68,6 @@ def test_texts_are_texts_in_their_order():
     assert {"two", "lines", "first", "second"} <= set(texts)
 
 
-def pixels(page, svg: str) -> np.ndarray:
-    page.set_content(f'<body style="background:#fff;color:#123">{svg}')
-    shot = page.screenshot(full_page=True)
-    return np.asarray(Image.open(io.BytesIO(shot)).convert("RGB")).astype(int)
-
-
-@pytest.mark.browser
-def test_rounding_and_letters_in_order_are_not_seen(browser, monkeypatch):
-    page = browser.new_page()
-    made = illustrate(formulas, "A curve.").svg
-    after = pixels(page, made)
-    for name in ("_rounded", "_put_in_reading_order"):
-        monkeypatch.setattr(style, name, lambda as_it_is: as_it_is)
-    exact = illustrate(formulas, "A curve.").svg
-    before = pixels(page, exact)
-    page.close()
-    assert made != exact and before.shape == after.shape
-    assert (before < 128).any(axis=2).mean() > 0.002  # something is drawn
-    assert (abs(before - after).max(axis=2) > 64).mean() < 2e-5
-
-
-# Texts that leave the picture, or lie on another.
-CLASHES = """
-() => {
-  const svg = document.querySelector("svg");
-  const whole = svg.getBoundingClientRect();
-  const boxes = [...svg.querySelectorAll("text")].map((el) => [el, el.getBoundingClientRect()]);
-  const found = boxes.filter(([el, box]) => box.width === 0
-    || box.left < whole.left - 1 || box.right > whole.right + 1
-    || box.top < whole.top - 1 || box.bottom > whole.bottom + 1).map(([el]) => el.textContent);
-  boxes.forEach(([a, p], k) => boxes.slice(k + 1).forEach(([b, q]) => {
-    const wide = Math.min(p.right, q.right) - Math.max(p.left, q.left);
-    const high = Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top);
-    if (wide > 1 && high > 5) found.push(`${a.textContent} on ${b.textContent}`);
-  }));
-  return found;
-}
-"""
-
-
-@pytest.mark.browser
-@pytest.mark.chromium
-def test_texts_fit_in_other_fonts_and_are_read_aloud(browser):
-    page = browser.new_page()
-    for make in (draw, formulas):
-        svg = illustrate(make, "Some formulas.", 3.5, 2.5).svg
-        assert style._FONT in svg
-        for font in (style._FONT, "'DejaVu Sans Condensed'", "'DejaVu Serif'"):
-            page.set_content(f"<main>{svg.replace(style._FONT, font)}</main>")
-            assert page.evaluate(CLASHES) == []
-    tree = page.locator("main").aria_snapshot()
-    page.close()
-    assert 'figure "Some formulas."' in tree and "error of" in tree and "lines" in tree
-
-
 # The narrow form
 
 
@@ -156,32 +100,6 @@ def test_what_neighbours_shared_each_panel_has_when_they_stand_apart():
     assert made.narrow.count("torque, N m") == 2
 
 
-def test_a_legend_takes_as_many_lines_as_a_narrow_page_asks_for():
-    names = [f"a curve of many, the {k}th" for k in range(4)]
-
-    def draw(figure):
-        lines = figure.subplots().plot([0, 1], np.arange(8).reshape(2, 4))
-        figure.legend(lines, names, loc="outside upper left", ncols=4)
-
-    made = illustrate(draw, "Four curves.")
-    for svg, lines in ((made.svg, 1), (made.narrow, 4)):
-        texts = [e for e in ET.fromstring(svg).iter(f"{SVG}text") if e.text in names]
-        assert len(texts) == 4 and len({e.attrib["y"] for e in texts}) == lines
-
-
-@pytest.mark.parametrize("form", ["svg", "narrow"])
-def test_no_letter_is_too_small(form):
-    def small(figure):
-        figure.subplots().set(title=r"$x_{a_b}$")
-        figure.text(0.5, 0.5, "tiny", fontsize=4)
-
-    svg = getattr(illustrate(small, "Small letters."), form)
-    smallest = min(map(float, re.findall(r"font(?:-size)?: ([\d.]+)px", svg)))
-    assert smallest == style._LEAST
-    least = float(re.search(r"--least:(\d+)px", svg)[1])
-    assert least * smallest / size(svg)[0] == pytest.approx(9, rel=0.01)
-
-
 def crowded(figure):
     axis = figure.subplots()
     for x in (0.2, 0.3):
@@ -192,22 +110,11 @@ def beyond(figure):
     figure.subplots().text(0.5, 0.5, "a label that is longer than a narrow page is wide")
 
 
-def squeezed(figure):
-    figure.subplots().set_yticks([0, 1], ["a name that leaves no room", "to the bars"])
-
-
 def heavy(figure):
     figure.subplots().plot(*np.random.default_rng(0).random((2, 3000)), ".")
 
 
-def covered(figure):
-    axes = figure.subplots(1, 2)
-    meshes = [axis.pcolormesh(np.eye(3)) for axis in axes]
-    figure.colorbar(meshes[0], ax=list(axes))
-    axes[1].set_title("a title that lies upon the bar of the colours")
-
-
-@pytest.mark.parametrize("make", [crowded, beyond, squeezed, heavy, covered])
+@pytest.mark.parametrize("make", [crowded, beyond, heavy])
 def test_where_it_cannot_be_read_there_is_none(make):
     made = illustrate(make, "A figure.")
     assert made.narrow == ""
@@ -258,11 +165,8 @@ def test_the_suffix_decides_what_is_saved(tmp_path):
     (page,) = PdfReader(tmp_path / "curve.PDF").pages
     assert [float(x) for x in page.mediabox[2:]] == pytest.approx([4 * 72, 2 * 72])
     assert ET.parse(tmp_path / "curve.svg").getroot().tag == f"{SVG}svg"
-    before = sorted(tmp_path.iterdir())
-    for name in ("curve.jpg", "curve", "curve.svg.txt"):
-        with pytest.raises(ValueError, match=re.escape("suffix of path must be one of '.svg'")):
-            made.save(tmp_path / name)
-    assert sorted(tmp_path.iterdir()) == before
+    with pytest.raises(ValueError, match=re.escape("suffix of path must be one of '.svg'")):
+        made.save(tmp_path / "curve.jpg")
 
 
 def test_the_matplotlib_figure_is_within_reach(tmp_path):
@@ -272,8 +176,6 @@ def test_the_matplotlib_figure_is_within_reach(tmp_path):
     axis.set_title("Changed")
     made.figure.savefig(tmp_path / "mine.svg")
     assert "Changed" in (tmp_path / "mine.svg").read_text(encoding="utf-8")
-    with pytest.raises(ValueError, match="no matplotlib figure"):
-        _ = style.Illustration(made.svg, made.alt).figure
 
 
 @pytest.mark.parametrize("names", [["a", "b"], ["training", "test, after 20,000 epochs"] * 3])

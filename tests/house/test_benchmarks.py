@@ -14,7 +14,6 @@ from ddlib.setups import STATE_FEEDBACK
 sys.path.insert(0, str(ROOT / "benchmarks"))
 import measure
 import recordings
-import run
 
 
 @pytest.mark.parametrize("written", [recordings.Written, recordings.Textbook])
@@ -50,20 +49,3 @@ def test_a_goal_is_to_be_ahead_and_to_stay_so(committed, now, reached, tmp_path,
         measure.COMMITTED.write_text(json.dumps({"rows": rows}))
     assert measure.met(row(now)) is reached
     assert measure.met(row(now, judged=False)) is None
-
-
-def test_a_part_that_fails_writes_nothing(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(run.results, "FOLDER", tmp_path)
-    monkeypatch.setattr(run, "PARTS", {"good": None, "bad": None})
-    row = measure.quantity("g", "w", 1.0, "s", 2.0)
-    monkeypatch.setattr(run, "run", lambda part: [row] if part == "good" else None)
-    monkeypatch.setattr(sys, "argv", ["run.py"])
-    with pytest.raises(SystemExit, match="failed: bad"):
-        run.main()
-    assert "met" in capsys.readouterr().out
-    assert not list(tmp_path.iterdir())
-    monkeypatch.setattr(run, "PARTS", {"good": None})
-    run.main()
-    content = json.loads((tmp_path / "benchmarks.json").read_text())
-    assert content["rows"] == [row]
-    assert {"date", "processor", "cores", "seconds"} <= set(content["made by"])

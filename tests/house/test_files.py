@@ -1,8 +1,5 @@
 """Files: whole or not there, whatever happens while they are written."""
 
-import os
-import stat
-
 import pytest
 
 from ddlib import _files
@@ -32,14 +29,3 @@ def test_what_fails_half_way_leaves_the_old_file_and_nothing_else(tmp_path, monk
         write_whole(path, "new" * 10**5)
     assert [p.name for p in tmp_path.iterdir()] == ["kept.txt"]
     assert path.read_text() == "old"
-
-
-@pytest.mark.skipif(os.name == "nt", reason="Windows has no such modes")
-def test_modes_stay_as_they_are_or_are_a_new_files(tmp_path):
-    plain, path = tmp_path / "plain", tmp_path / "written"
-    plain.write_text("x")
-    write_whole(path, "x")
-    assert stat.S_IMODE(path.stat().st_mode) == stat.S_IMODE(plain.stat().st_mode)
-    path.chmod(0o600)
-    write_whole(path, "y")
-    assert stat.S_IMODE(path.stat().st_mode) == 0o600

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.signal import savgol_filter
 from scipy.stats import multivariate_normal
 
 from ddlib.control import pd
@@ -118,17 +117,6 @@ def test_the_process_noise_is_found(known):
     runs = np.stack([rough_motion(800, process, noise, seed)[1] for seed in range(6)])
     found = smoothers._likeliest(runs, known)
     assert np.log10(found / (process * STEP**5 / noise**2)) == pytest.approx(0.0, abs=0.12)
-
-
-def test_smoothed_states_are_nearer_than_parabolas_of_any_window():
-    x, y = rough_motion(3000, 400.0, 1e-3, 5)
-    found = kalman_states(y[:, None], STEP)[:, 0]
-    inner = slice(60, -60)
-    for k in (1, 2):
-        best = min(
-            (savgol_filter(y, w, 2, k, STEP) - x[:, k])[inner].std() for w in range(3, 60, 2)
-        )
-        assert (found[:, k] - x[:, k])[inner].std() < best
 
 
 def test_a_slow_sine_passes_both_with_its_derivatives():

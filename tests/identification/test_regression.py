@@ -150,17 +150,6 @@ def test_a_passive_joint_is_left_out_with_a_word():
     assert one.value == pytest.approx(1.4, abs=2e-3)
 
 
-def test_repetitions_leave_out_the_same():
-    parts = [by_modulation(locked(1e-4, seed=k), RIGID) for k in range(3)]
-    stacked = parts[0]._replace(
-        regressor=tuple(np.stack(x) for x in zip(*(p.regressor for p in parts))),
-        torque=tuple(np.stack(y) for y in zip(*(p.torque for p in parts))),
-    )
-    found = least_squares(stacked)
-    assert found.values.shape == (3, 3) and np.isnan(found.values).all()
-    np.testing.assert_allclose(found.combinations[0].value, [1.4] * 3, atol=0.01)
-
-
 def test_impossible_inertias_are_flagged():
     motion = states(60)
     arm = CMU_DD_ARM_II.regressor(*motion)[..., :3] @ [1.0, 0.7, 0.3]

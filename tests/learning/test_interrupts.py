@@ -6,12 +6,9 @@ import signal
 import subprocess
 import sys
 import time
-from threading import Event
 
 import numpy as np
 import pytest
-
-from ddlib.learning._threads import in_threads
 
 CALLS = {
     "descent": "train_ensemble(start, data, test=test, epochs=10**7, snapshots=(0, 1), **quiet)",
@@ -74,17 +71,3 @@ def test_ctrl_c_hands_out_what_was_reached(call):
     assert np.isfinite(np.array(found["tested"])[begun]).all()
     assert f"{epochs.max():,} of 10,000,000" in found["words"] and len(found["words"]) < 300
     assert found["snapshots"] == ([0] if call == "descent" else [])
-
-
-def test_an_error_in_one_thread_ends_the_others():
-    stop = Event()
-
-    def work(item):
-        if item == 1:
-            raise ZeroDivisionError("one of them")
-        assert stop.wait(30)
-
-    began = time.monotonic()
-    with pytest.raises(ZeroDivisionError, match="one of them"):
-        in_threads(work, [0, 1], 2, stop)
-    assert time.monotonic() - began < 5

@@ -139,24 +139,6 @@ def test_scipy_finds_the_same_optimum(data, whiten):
         )
 
 
-def test_a_step_for_white_inputs_does_not_see_a_linear_change_of_the_inputs(data, start):
-    """The same network of stretched and mixed inputs goes the same way; else it does not."""
-    w = start[0]
-    mix = np.random.default_rng(0).normal(size=(WIDTH, WIDTH)) * np.logspace(0, 2, WIDTH)
-    own = {k: getattr(w, k) @ np.linalg.inv(mix).T for k in ("hidden_weights", "direct_weights")}
-    for whiten in (True, False):
-        told = []
-        for weights, cases in ((w, data), (replace(w, **own), replace(data, x=data.x @ mix))):
-            objective = Objective(weights, cases, whiten=whiten)
-            vector = objective.pack(weights)
-            matrix, gradient, _ = objective.normal(vector)
-            matrix = matrix.tril() + matrix.tril(-1).T + torch.eye(len(matrix))
-            after = objective.unpack(vector - torch.linalg.solve(matrix, gradient))
-            told.append(after.activity(cases.x)[1])
-        assert np.abs(told[0] - w.activity(data.x)[1]).max() > 0.1
-        assert np.allclose(*told, atol=1e-8) == whiten
-
-
 def test_an_ensemble_is_its_members(data, other, start):
     options = dict(decay=0.01, test=other, steps=40)
     together = quietly(start, data, **options)

@@ -78,16 +78,6 @@ class Filtered(nn.Module):
         return self.dropout(self.convolution(x).squeeze(-1))
 
 
-class Recurrent(nn.Module):
-    def __init__(self):
-        super().__init__()
-        torch.manual_seed(0)
-        self.gru, self.out = nn.GRU(2, 6, batch_first=True), nn.Linear(6, 2)
-
-    def forward(self, x):
-        return self.out(self.gru(x.transpose(1, 2))[0][:, -1])
-
-
 def test_the_inertia_of_a_convolution_is_the_one_it_was_given():
     mass, stiffness = np.array([[1.7], [0.4]]), np.array([[3.0], [9.0]])
     module = Filtered(mass, stiffness)
@@ -95,21 +85,3 @@ def test_the_inertia_of_a_convolution_is_the_one_it_was_given():
     assert module.training and module.dropout.training  # as it was before
     np.testing.assert_allclose(found[..., 2], np.diag(mass[:, 0]), atol=1e-9)
     np.testing.assert_allclose(found[..., 0], np.diag(stiffness[:, 0]), atol=1e-9)
-
-
-def test_a_recurrent_network_agrees_with_its_own_differences():
-    module = Recurrent()
-    by_autograd = mean_gradient(module, WINDOWS)
-    double = module.double().eval()
-
-    def plain(x):
-        with torch.no_grad():
-            return double(torch.tensor(x)).numpy()
-
-    np.testing.assert_allclose(by_autograd, mean_gradient(plain, WINDOWS), rtol=1e-4, atol=1e-6)
-
-
-def test_a_model_that_mixes_up_its_axes_is_refused():
-    for module in (lambda x: x[:, 0, 0], nn.Flatten(0)):
-        with pytest.raises(ValueError, match="model must return torques of shape"):
-            mean_gradient(module, WINDOWS)

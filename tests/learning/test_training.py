@@ -43,19 +43,6 @@ def test_cases_pair_each_window_with_the_torque_at_its_centre():
 # --- what does not belong together ----------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "options, words",
-    [
-        (dict(rate=[1.0, 2.0]), r"rate must be one number or 3, got shape \(2,\)"),
-        (dict(weights=Weights.random(2, WIDTH + 2)), "weights must have the joints and width"),
-    ],
-)
-def test_weights_and_rates_that_do_not_fit_are_refused(data, options, words):
-    options = {"weights": Weights.random(3, WIDTH), "epochs": 5, "progress": False, **options}
-    with pytest.raises(ValueError, match=words):
-        train_ensemble(data=data, **options)
-
-
 # --- history ----------------------------------------------------------------------------
 
 
@@ -148,14 +135,3 @@ def test_a_far_too_large_rate_is_told(data):
         warnings.simplefilter("error")
         train_ensemble(start, data, rate=[1e6, 1e6, 3.0], **options)
         train_ensemble(start, data, rate=1e6, targets=targets, **options)
-
-
-def test_what_prints_is_one_short_line():
-    rng = np.random.default_rng(1)
-    windows, torque = rng.normal(size=(40, 2, 5)), rng.normal(size=(40, 2))
-    data = TrainingSet.from_arrays(windows, torque, step=0.004)
-    assert repr(data) == "TrainingSet(40 cases, 2 joints, window of 5 samples, 0.004 s apart)"
-    assert "apart" not in repr(TrainingSet.from_arrays(windows, torque))
-    model, _, _ = train_ensemble(Weights.random(2, 5), data, epochs=2, rate=0.1, progress=False)
-    wanted = "TorqueModel(2 networks, 10 hidden units, 2 joints, window 5, 0.004 s apart)"
-    assert model.step == 0.004 and repr(model) == wanted

@@ -1,7 +1,6 @@
 """Sliding windows and the scaling of joints: contents, round trips, refusals."""
 
 import numpy as np
-import pytest
 from hypothesis import given, settings, strategies as st
 from hypothesis.extra import numpy as hnp
 
@@ -49,8 +48,3 @@ def test_scaling_there_and_back(joints, target, data):
     middle = scaler.scale((low + high) / 2)
     np.testing.assert_allclose(middle, sum(target) / 2, atol=1e-9)  # affine
     np.testing.assert_allclose(scaler.gain, np.diff(target)[0] / (high - low))
-
-
-def test_a_rest_that_is_too_short_for_the_window_is_told():
-    with pytest.raises(ValueError, match="width must be at most 3, as the recording"):
-        sliding_windows(np.zeros((20, 2)), 5, slice(1, 10))

@@ -6,7 +6,6 @@ import sys
 import pytest
 from book_pages import ROOT
 
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
 sys.path.insert(0, str(ROOT / "book" / "_ext" / "live" / "page"))
 import kernel
 

@@ -104,12 +104,9 @@ def test_what_differs_and_what_does_not(run, one, other, same):
         ("a = [1]\nb = a", "b.append(2)", ["a", "b"]),  # two names of one object
         ("a = [1]\nb = {'x': a}", "a.append(2)", ["a", "b"]),  # a part
         ("a = [1]\ndef f(x):\n    x.append(2)\n    return x", "b = f(a)", ["a"]),
-        ("a = iter([1, 2])", "b = next(a)", ["a"]),
         ("a = (k for k in [1, 2])", "print(list(a))", ["a"]),
         ("def a(k, at=[]):\n    at.append(k)\n    return at", "b = a(1)", ["a"]),
-        ("def a():\n    a.n += 1\na.n = 0", "a()", ["a"]),
         ("class A:\n    n = 0\n    def f(self):\n        self.n += 1\na = A()", "b = a.f()", ["a"]),
-        ("class A:\n    n = 0\n    def on(self):\n        pass\na = A()", "b = a.on()", []),
         ("a = [1]\nb = a", "c = a + b", []),
     ],
 )  # fmt: skip

@@ -3,7 +3,6 @@
 import hashlib
 import json
 import re
-import subprocess
 
 import chromium
 import pytest
@@ -53,15 +52,6 @@ def test_without_a_mirror_wheels_come_from_pyodides_address_and_stay(tmp_path, m
     assert {path.read_text() for path in store.iterdir()} == {"numpy", "scipy"}
     with pytest.raises(Refused, match=r"^no sympy of Pyodide .* cannot be reached .* MIRROR="):
         take([entry("numpy"), entry("sympy")], "", store)
-
-
-def test_without_npms_registry_one_sentence_says_what_is_missing(tmp_path, monkeypatch):
-    printed = "npm error code EAI_AGAIN\nnpm error errno EAI_AGAIN\nnpm error request to x failed\n"
-    ended = subprocess.CompletedProcess([], 1, "", printed)
-    monkeypatch.setattr(packages.shutil, "which", lambda name: name)
-    monkeypatch.setattr(packages.subprocess, "run", lambda *args, **how: ended)
-    with pytest.raises(Refused, match=r"^no core of Pyodide .* “request to x failed”"):
-        packages.core(tmp_path / "store")
 
 
 def test_a_widget_finds_in_a_page_what_it_imports_of_its_still():

@@ -39,22 +39,6 @@ def test_json_keeps_five_digits_and_whole_numbers(tmp_path):
     assert [p.name for p in path.parent.iterdir()] == ["a.json"]
 
 
-def test_what_is_no_number_does_not_replace_a_result(tmp_path):
-    path = tmp_path / "a.json"
-    results.write_json(path, {"a": 1})
-    with pytest.raises(TypeError, match="set does not go into a results file"):
-        results.write_json(path, {"a": {2}})
-    assert json.loads(path.read_text()) == {"a": 1}
-
-
-def test_read(tmp_path, monkeypatch):
-    monkeypatch.setattr(results, "FOLDER", tmp_path)
-    results.write_json(tmp_path / "a.json", {"a": [1, 2]})
-    assert results.read("a") == {"a": [1, 2]}
-    with pytest.raises(FileNotFoundError, match=r"no result 'b' .*run `make reproduce` first"):
-        results.read("b")
-
-
 @pytest.fixture
 def parts(tmp_path, monkeypatch):
     """Two quick studies in place of the real ones; the list says which have run.

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from ddlib import paper
 from ddlib.learning import NotConverged
 from workshop.report import results
 from workshop.report.exact_states import SAMPLES
@@ -23,11 +22,3 @@ def test_the_same_cases_give_the_same_errors(found):
     for what in ("training", "test"):
         assert row["solver"][what][0] == pytest.approx(again[what][0], rel=0.1)
     assert all(np.min(row["solver"]["gradient"]) > 0 for row in found["samples"])
-
-
-def test_the_solver_beats_descent_on_the_same_cases(found):
-    """Both train on the draws of one size; the first two are shared."""
-    for row in found["samples"]:
-        if row["descent"]:
-            assert np.median(row["solver"]["training"]) < np.median(row["descent"]["training"])
-    assert paper.HIDDEN_UNITS in study._UNITS

@@ -138,9 +138,7 @@ def test_friction_is_what_is_left():
 
 
 @pytest.mark.parametrize("period", [0.001, 0.004])
-def test_any_control_period_will_do_and_no_other_log(period):
+def test_any_control_period_will_do(period):
     options = dict(control_step=period, duration=2.0, rest=0.4)
     made = record(ARM, pd(KP, KD), APPENDIX_I[5], log_step=period, **options)
     assert np.abs(residual_torque(ARM, made)).max() < 2e-6 * (period / CONTROL_STEP) ** 2 * 10
-    with pytest.raises(ValueError, match=rf"must be logged every {period:g} s.*got 0\.008 s"):
-        residual_torque(ARM, record(ARM, pd(KP, KD), APPENDIX_I[5], log_step=0.008, **options))

@@ -1,4 +1,4 @@
-"""What a piece of code has that is not for a reader: lines that keep books, and bare values."""
+"""Lines of a piece of code that keep books and do not teach."""
 
 from __future__ import annotations
 
@@ -66,36 +66,3 @@ def called(node: ast.stmt) -> str:
     if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
         return ast.unparse(node.value.func)
     return ""
-
-
-def shows_something(code: str) -> bool:
-    """Whether a cell has an output: it prints, or ends with a value."""
-    tree = ast.parse(code)
-    every, last = list(statements(tree.body)), tree.body[-1]
-    silent = re.fullmatch(r"(\w+\.)?quoted?|glue|stated|.*assert_\w+|warnings\.\w+", called(last))
-    return "print" in map(called, every) or (isinstance(last, ast.Expr) and not silent)
-
-
-def only_imports(code: str) -> Iterator[bool]:
-    """Of each statement, whether it imports."""
-    yield from (isinstance(node, (ast.Import, ast.ImportFrom)) for node in ast.parse(code).body)
-
-
-BARE = (ast.Attribute, ast.Subscript, ast.Constant, ast.Tuple, ast.List, ast.Dict)
-BARE += (ast.ListComp, ast.DictComp, ast.BinOp, ast.UnaryOp, ast.Compare, ast.JoinedStr)
-OF_ARRAYS = r"np\..*|float|int|round|abs|max|min|sum|sorted|list|.*\.(max|min|mean|round|sum|std)"
-
-
-def ends_with_a_bare_value(code: str) -> bool:
-    """Whether a cell's output is how Python writes a number, an array or a list.
-
-    What is called otherwise makes a figure, a table or a widget.
-    """
-    *before, last = ast.parse(code).body
-    if not isinstance(last, ast.Expr):
-        return False
-    if isinstance(last.value, ast.Name):  # a widget that was made in the same cell
-        made = [node for node in before if isinstance(node, ast.Assign)]
-        names = {ast.unparse(node.targets[0]): ast.unparse(node.value) for node in made}
-        return not re.match(r"(\w+\.)?[A-Z]\w+\(", names.get(last.value.id, ""))
-    return isinstance(last.value, BARE) or bool(re.fullmatch(OF_ARRAYS, called(last)))

@@ -4,25 +4,18 @@ from __future__ import annotations
 
 import re
 
-import nbformat
 from book_pages import WALK
-from bookkeeping import (
-    ends_with_a_bare_value,
-    lines_of_bookkeeping,
-    only_imports,
-    shows_something,
-)
-from needed import needed
+from bookkeeping import lines_of_bookkeeping
 
 MAX_VISIBLE_LINES, MAX_VISIBLE_COLUMNS = 25, 84  # one idea, and what a page has room for
-MAX_OPENING, MAX_PROMISE = 60, 30  # words before the first picture, words of *You will*
+MAX_PROMISE = 30  # words of *You will*
 HIDDEN = {"hide-input", "hide-cell", "remove-input", "remove-cell"}
 TUTORIAL = "book/use-it-on-your-arm"
 FROM_SCRATCH = {TUTORIAL, *WALK}  # open cells run alone, so they import and print
 OWN, READING = "On your own", "Further reading"
 FOUND = "What you found"  # ends a lesson; the paper's sentences stand on its evidence page
 CHANGE_THIS = "change-this"  # tag of the one cell whose settings all open cells follow
-MOST_WORDS, MOST_NUMBERS, MOST_IN_PARAGRAPH = 2500, 40, 3
+MOST_WORDS = 2500
 MOST_HIDDEN, LEAST_OPEN = 12, 0.6  # hidden lines of a lesson, share of its lines that stand open
 
 
@@ -56,17 +49,6 @@ def paragraphs(text: str) -> list[str]:
 # --- every notebook -----------------------------------------------------------------------
 
 
-def is_stored_bare(notebook) -> list:
-    """Valid and stripped, every cell has an id of its own and is not empty."""
-    nbformat.validate(notebook)
-    ids = [cell.id for cell in notebook.cells]
-    wrong = [cell.id for cell in code_of(notebook) if cell.outputs or cell.execution_count]
-    wrong += [cell.id for cell in notebook.cells if not cell.source.strip()]
-    wrong += [name for name in ids if ids.count(name) > 1]
-    wrong += ["widgets"] * ("widgets" in notebook.metadata)
-    return wrong + ["kernel"] * (notebook.metadata.kernelspec.name != "python3")
-
-
 def has_one_title(notebook) -> list:
     found = headings(prose(notebook), 1)
     first = notebook.cells[0]
@@ -86,44 +68,14 @@ def visible_code_teaches(notebook) -> list:
     return [line for cell in visible(notebook) for line in lines_of_bookkeeping(cell.source)]
 
 
-def folds_open_onto_something(notebook) -> list:
-    """One fold for the imports of a recipe is allowed where no chapter's grid is asked for."""
-    folds = [c for c in code_of(notebook) if tags(c) & {"hide-input", "hide-cell", "hide-output"}]
-    silent = [cell for cell in folds if not shows_something(cell.source)]
-    chapter = headings(prose(notebook), 2)[-1:] == [READING]
-    recipes = [c for c in silent if not chapter and set(only_imports(c.source)) == {True}]
-    return [cell.id for cell in silent if cell not in recipes[:1]]
-
-
-def what_is_removed_shows_nothing(notebook) -> list:
-    """`remove-cell` takes an output away, too, so such a cell has none."""
-    removed = [cell for cell in code_of(notebook) if "remove-cell" in tags(cell)]
-    return [cell.id for cell in removed if shows_something(cell.source)]
-
-
-def outputs_are_no_bare_values(notebook) -> list:
-    return [cell.id for cell in code_of(notebook) if ends_with_a_bare_value(cell.source)]
-
-
 EVERYWHERE = (
-    is_stored_bare,
     has_one_title,
     visible_code_is_short,
     visible_code_teaches,
-    folds_open_onto_something,
-    what_is_removed_shows_nothing,
-    outputs_are_no_bare_values,
 )
 
 
 # --- every chapter ------------------------------------------------------------------------
-
-
-def title_then_thesis(notebook) -> list:
-    title, thesis = paragraphs(notebook.cells[0].source)[:2]
-    titled = re.fullmatch(r"(\([\w-]+\)=\n)?# .+", title)
-    plain = not re.match(r"[#>`:|*-]+ |\*\*", thesis) and len(thesis.split()) <= MAX_OPENING
-    return [] if titled and plain else [title, thesis]
 
 
 def closing(notebook) -> list:
@@ -150,7 +102,7 @@ def open_answer(text: str) -> str:
     return re.sub(r"^<details .*?^</details>$", "", before, flags=re.M | re.S).strip()
 
 
-CHAPTER = (title_then_thesis, closing)
+CHAPTER = (closing,)
 
 
 # --- every lesson, and the tutorial -------------------------------------------------------
@@ -172,16 +124,6 @@ def title_and_thesis_stand_alone(notebook) -> list:
     return [] if len(above) == 1 and len(paragraphs(above[0])) == 2 else above or ["no title"]
 
 
-def result_stands_first(notebook) -> list:
-    """Before the promise something is shown: figures with their captions, or widgets."""
-    code = [cell for cell in before_the_promise(notebook) if cell.cell_type == "code"]
-    shown = [cell for cell in code if "remove-cell" not in tags(cell)]
-    widgets = [code[place] for place in needed([cell.source for cell in code])]
-    results = [c for c in shown if c.metadata.get("mystnb", {}).get("figure") or c in widgets]
-    folded = all("hide-input" in tags(cell) for cell in shown)
-    return [] if shown and len(shown) == len(results) and folded else [len(shown), len(results)]
-
-
 def three_lines_follow(notebook) -> list:
     """*You will* in one sentence, *You need*, *Time to run*: a paragraph each, nothing else."""
     cell = notebook.cells[len(before_the_promise(notebook))]
@@ -193,16 +135,9 @@ def three_lines_follow(notebook) -> list:
     return [] if len(words) <= MAX_PROMISE and not re.search(r"[.?!] ", lines[0]) else words
 
 
-def ends_with_what_was_found(notebook) -> list:
-    found = headings(prose(notebook), 2)
-    return [] if FOUND in found[-2:] else found
-
-
 LESSON = (
     title_and_thesis_stand_alone,
-    result_stands_first,
     three_lines_follow,
-    ends_with_what_was_found,
 )
 
 
@@ -211,16 +146,6 @@ LESSON = (
 
 def source_lines(cells) -> int:
     return sum(bool(line.strip()) for cell in cells for line in cell.source.splitlines())
-
-
-def numbers(text: str) -> int:
-    """How many numbers of the book a text inserts."""
-    return len(re.findall(r"{glue:text}`", text))
-
-
-def captions(notebook) -> list[str]:
-    figures = (cell.metadata.get("mystnb", {}).get("figure") for cell in code_of(notebook))
-    return [figure["caption"] for figure in figures if figure]
 
 
 def is_starter(cell) -> bool:
@@ -243,13 +168,6 @@ def words(notebook) -> int:
 
 def is_short(notebook) -> list:
     return [f"{words(notebook)} words"] if words(notebook) > MOST_WORDS else []
-
-
-def has_few_numbers(notebook) -> list:
-    texts = [*paragraphs(prose(notebook)), *captions(notebook)]
-    crowded = [t for t in texts if numbers(t) > MOST_IN_PARAGRAPH and not t.startswith("|")]
-    total = sum(map(numbers, texts))
-    return [*crowded, *[f"{total} numbers"] * (total > MOST_NUMBERS)]
 
 
 def one_cell_to_change_comes_first(notebook) -> list:
@@ -290,7 +208,6 @@ def exercises_wait_for_an_answer(notebook) -> list:
 
 SHAPE = (
     is_short,
-    has_few_numbers,
     one_cell_to_change_comes_first,
     code_stands_open,
     figures_are_made_in_the_open,

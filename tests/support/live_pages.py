@@ -5,7 +5,6 @@ from __future__ import annotations
 import html
 import json
 import os
-import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,10 +12,8 @@ from pathlib import Path
 import chromium
 import pytest
 from book_pages import ROOT
-from open_cells import lesson
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
 from live import cells, packages, pages
+from open_cells import lesson
 
 KEPT = ROOT / "_build" / "pyodide" / packages.VERSION
 """Where packages are kept that once were taken."""
