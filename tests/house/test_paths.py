@@ -20,12 +20,13 @@ def clone(request, tmp_path):
     folder = tmp_path / request.param
     commands = folder / ".venv" / "bin"
     commands.mkdir(parents=True)
-    for name in ("Makefile", "pyproject.toml", "requirements.txt"):
+    for name in ("Makefile", "pyproject.toml", "requirements.txt", "requirements-test.txt"):
         shutil.copy(ROOT / name, folder)
     for name in ("python", "ruff"):
         (commands / name).write_text(RECORD)
         (commands / name).chmod(0o755)
-    (folder / ".venv" / ".ready").touch()
+    for done in (".ready", ".tested"):
+        (folder / ".venv" / done).touch()
     return folder
 
 
