@@ -87,7 +87,7 @@ def test_a_dask_cluster_gives_the_same(quick):
     ):
         outcome = quick(experiment, settings, backend="dask")
         workers = {worker.process.pid for worker in cluster.workers.values()}
-        assert {row["pid"] for row in outcome} == workers
+        assert {row["pid"] for row in outcome} <= workers  # one may have done it all
     np.testing.assert_array_equal(values(outcome), values(experiment(**row) for row in settings))
     again = quick(experiment, settings)  # from the files
     assert [row["pid"] for row in again] == [row["pid"] for row in outcome]
