@@ -1,5 +1,6 @@
 """*Run this page*: what Python does in the page, here without one: cells, names, what is told."""
 
+import concurrent.futures
 import importlib
 import json
 import sys
@@ -127,6 +128,7 @@ def test_a_syntax_error_has_its_line_in_words(run):
 
 
 def test_a_training_shows_its_progress_and_can_be_stopped(run, monkeypatch):
+    monkeypatch.setattr(concurrent.futures, "ThreadPoolExecutor", None)  # given back at the end
     monkeypatch.setitem(sys.modules, "tqdm", types.ModuleType("tqdm"))
     monkeypatch.setitem(sys.modules, "tqdm.auto", types.ModuleType("tqdm.auto"))
     monkeypatch.setattr(kernel.Progress, "pause", None)
