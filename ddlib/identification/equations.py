@@ -32,7 +32,7 @@ from ddlib.identification.regression import (
     known_names,
     regressor_columns,
 )
-from ddlib.logs.checking import warn_of_log
+from ddlib.logs import warn_of
 from ddlib.simulation import Recording, record
 
 
@@ -86,7 +86,7 @@ def by_modulation(
     """
     instance("recording", recording, Recording)
     known_names(names)
-    warn_of_log(recording)
+    warn_of(recording)
     begin, end = recording.span
     shortest, tiny = 12 * recording.step, 1e-6 * recording.step
     if end - begin < shortest - tiny:
@@ -96,9 +96,18 @@ def by_modulation(
             f"width must lie in [{shortest:g}, {end - begin:g}], got {width:g} s: a bump has "
             "12 samples or more, and is no longer than the motion"
         )
-    width = int((width + tiny) / (6 * recording.step)) * 6 * recording.step
     if hold is None and recording.control_step is None:
         raise ValueError("hold must be given, as the recording has no control_step; got None")
+    return averaged(recording, names, width, hold)
+
+
+def averaged(recording: Recording, names: Sequence[str], width, hold, blurred=True) -> Equations:
+    """`by_modulation` of arguments that were checked; names may be any of `_modulated`.
+
+    What noise in the motion makes in the regressor is left out unless `blurred`.
+    """
+    begin, end = recording.span
+    width = int((1 + 1e-6) * width / (6 * recording.step)) * 6 * recording.step
     acting, recording = acting_time(recording, hold), with_runs(recording)
     place = recording.t - begin, width, end - begin
     bumps, later, after = (
@@ -127,7 +136,9 @@ def by_modulation(
         np.concatenate([y[..., k, keep] @ w.T for k, (w, keep) in enumerate(zip(ws, keeps))], -1)
         for y, keeps, ws in zip(torque, steady, whiten)
     )
-    blur, notes = regressor_blur(recording, regressor), notes_on_slow_joints(steady, names)
+    blur, notes = None, notes_on_slow_joints(steady, names)
+    if blurred:
+        blur = regressor_blur(recording, regressor)
     return Equations(tuple(names), regressor(recording.q), torques, blur, notes=notes)
 
 
@@ -178,28 +189,38 @@ def _sampled(recording: Recording, velocity, acceleration, names, margin) -> Equ
 def _modulated(bumps, after, q, step) -> list[dict]:
     """What each parameter contributes to the modulated torque, for shoulder and elbow.
 
-    The means of the bumps from each sample to the next are `after`.
+    The means of the bumps from each sample to the next are `after`. If the elbow's zero is off by
+    an angle, `b` and `b_sin` are the coupling times its cosine and sine; likewise `g1`, `g1_cos`
+    and `g2`, `g2_cos` for angles that are not counted from the vertical.
     """
     w, w1, w2 = (x.T for x in bumps)
     velocity = five_point_velocity(q, step)
     sign = mean_sign(velocity)
     q1, q2, v1, v2 = q[..., 0], q[..., 1], velocity[..., 0], velocity[..., 1]
     c2, s2 = np.cos(q2), np.sin(q2)
-    weight = np.sin(q1 + q2) @ w
+    weight, across = np.sin(q1 + q2) @ w, np.cos(q1 + q2) @ w
+    ones = np.broadcast_to(w.sum(0), weight.shape)
     shoulder = {
         "a": q1 @ w2,
         "b": s2 @ w2 - (2 * c2 * v1) @ w1,
+        "b_sin": c2 @ w2 + (2 * s2 * v1) @ w1,
         "d": q2 @ w2,
         "g1": np.sin(q1) @ w,
         "g2": weight,
+        "g1_cos": np.cos(q1) @ w,
+        "g2_cos": across,
         "F_v1": -q1 @ w1,
         "F_c1": sign[..., 0] @ after.T,
+        "offset1": ones,
     }
     elbow = {
         "b": (s2 * v1 * (v1 + v2)) @ w - (c2 * v1) @ w1,
+        "b_sin": (c2 * v1 * (v1 + v2)) @ w + (s2 * v1) @ w1,
         "d": (q1 + q2) @ w2,
         "g2": weight,
+        "g2_cos": across,
         "F_v2": -q2 @ w1,
         "F_c2": sign[..., 1] @ after.T,
+        "offset2": ones,
     }
     return [shoulder, elbow]
