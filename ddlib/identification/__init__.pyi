@@ -23,6 +23,7 @@ from .recursive import (
 from .regression import (
     FRICTION as FRICTION,
     GRAVITY as GRAVITY,
+    OFFSETS as OFFSETS,
     RIGID as RIGID,
     SIGN_SPEED as SIGN_SPEED,
     SLOW as SLOW,

@@ -7,7 +7,7 @@ other signs, with a later torque. The reading under which they leave least of th
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import interp1d
@@ -18,6 +18,7 @@ from ddlib.identification.equations import averaged
 from ddlib.identification.regression import (
     FRICTION,
     GRAVITY,
+    OFFSETS,
     RIGID,
     Equations,
     Estimate,
@@ -27,10 +28,8 @@ from ddlib.identification.regression import (
 from ddlib.logs.findings import JOINTS, SEVERITIES, Check, Finding
 from ddlib.logs.readings import at_rest, readings, spikes, steady
 from ddlib.simulation import Recording
-from ddlib.tables import significant
 from ddlib.trajectories import Trajectory
 
-OFFSETS = ("offset1", "offset2")
 WEIGHT = (*GRAVITY, "g1_cos", "g2_cos")
 EVERY = (*RIGID, "b_sin", *WEIGHT, *FRICTION, *OFFSETS)
 """All parameters: coupling and weight are those of angles whose zeros may be anywhere."""
@@ -47,8 +46,8 @@ def check_recording(recording: Recording, names: Sequence[str] = RIGID + FRICTIO
     Single readings show wrong units, wraps, spikes, drop-outs and values that are held,
     saturation, joints that rest or have no torque, and torques that look like a command. The
     equations of motion show wrong signs, exchanged joints, a lag, angles that are counted
-    otherwise or from another zero, weight and offsets that are not among the parameters, and which
-    parameters the motion tells.
+    otherwise or from another zero, and weight and offsets that are not among the parameters. What
+    the motion tells of each parameter, `least_squares` says.
 
     Parameters
     ----------
@@ -105,33 +104,28 @@ def _joints(recording) -> Iterator[Finding]:
 
 def _motions(recording, names) -> Iterator[Finding]:
     """What the equations of motion show over all runs together."""
-    recording = _thinned(recording)
-    width, resting = _width(recording), at_rest(np.concatenate([*_centred(recording.q)]))
-    works = [not steady(recording.tau[..., j].ravel()) for j in range(2)]
+    thinned = _thinned(recording)
+    width, resting = _width(thinned), at_rest(np.concatenate([*(thinned.q - thinned.q[:, :1])]))
+    works = [not steady(thinned.tau[..., j].ravel()) for j in range(2)]
     if resting.all() or not any(works):
         return
-    if width < 12 or recording.q[..., 0].size < 4 * width:
+    if width < 12 or thinned.q[..., 0].size < 4 * width:
         yield _finding(
             "too short", "note", "There are too few samples to compare torque and motion.",
             "Sign, lag and units of the torque are not checked.", "Record longer motions.",
         )  # fmt: skip
         return
-    pieces = _pieces(recording, width)
+    pieces = _pieces(thinned, width)
     fit = _fit(pieces, width, blurred=True)
     if fit is None:
         return
     other = [] if resting.any() or not all(works) else [*_other_readings(pieces, width, fit)]
     yield from other
     if not other:
-        yield from _torque_spikes(pieces, len(pieces.q) // len(recording.q), width)
+        yield from _torque_spikes(recording, pieces, width, fit)
         yield from _signs(pieces, fit, works)
-        yield from _lag(pieces, width, fit)
+        yield from _lag(pieces, width, recording.step / pieces.step)
         yield from _pose(pieces, width, fit, names)
-    yield from _excitation(pieces, width, names)
-
-
-def _centred(q) -> np.ndarray:
-    return q - q[:, :1]
 
 
 def _with(recording, t, q, tau) -> Recording:
@@ -220,7 +214,7 @@ def _fit(pieces, width, names=EVERY, blurred=False) -> _Fit | None:
     """
     for chosen in (names, [name for name in names if name[:-1] != "F_c"]):
         equations = averaged(pieces, chosen, width * pieces.step, pieces.control_step, blurred)
-        if min(y.shape[-1] for y in equations.torque) > len(names) + 8:
+        if min(y.shape[-1] for y in equations.torque) > len(names):
             try:
                 return _Fit(equations, least_squares(equations))
             except ValueError:
@@ -294,42 +288,34 @@ def _other_readings(pieces, width, fit) -> Iterator[Finding]:
     )  # fmt: skip
 
 
-def _torque_spikes(pieces, per_run, width) -> Iterator[Finding]:
+def _torque_spikes(recording, pieces, width, fit) -> Iterator[Finding]:
     """Single torques that stand alone, and did not act on the arm: the equations leave them over.
 
     A torque that jumps for one sample may be a true one, as where a plan's velocity jumps.
     """
-    fit = _fit(pieces, width, [name for name in EVERY if name[:-1] != "F_c"])  # at all samples
-    if fit is None:
-        return
-    names, values = fit.equations.names, np.nan_to_num(fit.estimate.values)
+    anywhere = _fit(pieces, width, [name for name in EVERY if name[:-1] != "F_c"])  # slow, too
     for joint in range(2):
-        left = fit.equations.torque[joint] - fit.equations.regressor[joint] @ values
-        found = [
-            (size, piece, row)
-            for piece, tau in enumerate(pieces.tau[..., joint])
-            for row, size in zip(*spikes(tau))
-        ]
-        for size, piece, row in sorted(found, reverse=True)[:3]:
-            tau = np.zeros_like(pieces.tau)
-            tau[piece, row, joint] = 1.0
-            impulse = _with(pieces, pieces.t, pieces.q, tau)
-            bumps = averaged(impulse, names, width * pieces.step, pieces.control_step, False)
-            shape = bumps.torque[joint]
-            amount = abs(shape @ left) / (shape @ shape)
-            if (
-                amount < 0.5 * size
-                or amount * np.linalg.norm(shape) < 5 * fit.estimate.noise[joint]
-            ):
-                continue
-            seconds = pieces.step * (piece % per_run * pieces.t.size + row)
-            yield _finding(
-                "torque spike", "wrong",
-                f"In run {piece // per_run + 1}, {seconds:.4g} s from the begin of its motion, one "
-                f"torque of the {JOINTS[joint]} is off by {size:.3g} N m.",
-                "The arm did not move as if it had acted, but the fit believes it.",
-                "Take this sample out of the file, and read it again.", joint,
-            )  # fmt: skip
+        every = recording.tau[:, recording.motion, joint]
+        found = [(n, run, row) for run, tau in enumerate(every) for row, n in zip(*spikes(tau))]
+        for size, run, row in sorted(found, reverse=True)[:3]:
+            one = np.zeros_like(recording.tau)
+            one[run, recording.motion.start + row, joint] = size
+            one = _pieces(_thinned(replace(recording, tau=one)), width)
+            for model in filter(None, (fit, anywhere)):
+                names, values = model.equations.names, np.nan_to_num(model.estimate.values)
+                left = model.equations.torque[joint] - model.equations.regressor[joint] @ values
+                spike = averaged(one, names, width * one.step, one.control_step, False)
+                spike = spike.torque[joint]
+                seen = np.linalg.norm(spike) > 3 * model.estimate.noise[joint]
+                if seen and 0.5 < (spike @ left) / (spike @ spike) < 2:
+                    yield Finding(
+                        "torque spike", "wrong", run, joint,
+                        f"One torque is off by {size:.3g} N m.",
+                        "The arm did not move as if it had acted, but the fit believes it.",
+                        "Take this sample out of the file, and read it again.",
+                        [recording.motion.start + row],
+                    )  # fmt: skip
+                    break
 
 
 def _signs(pieces, fit, works) -> Iterator[Finding]:
@@ -371,8 +357,8 @@ def _signs(pieces, fit, works) -> Iterator[Finding]:
             )  # fmt: skip
 
 
-def _lag(pieces, width, fit) -> Iterator[Finding]:
-    """How much later the torque would have to be read to fit best.
+def _lag(pieces, width, least) -> Iterator[Finding]:
+    """How much later the torque would have to be read to fit best; `least` is a logged sample.
 
     What a lag leaves over is proportional to the torque's derivative; a few rounds of Gauss and
     Newton find it.
@@ -403,9 +389,9 @@ def _lag(pieces, width, fit) -> Iterator[Finding]:
         if not np.isfinite(change):
             return
         lag = float(np.clip(lag + change, -MOST_LAG, MOST_LAG))
-        if abs(change) < 0.1:
+        if abs(change) < 0.1 * least:
             break
-    if abs(lag) < max(0.6, 4 * error) or at.share > 0.9 * now.share:
+    if abs(lag) < max(0.6 * least, 4 * error) or at.share > 0.9 * now.share:
         return
     which, step = "later" if lag > 0 else "earlier", 1000 * pieces.step
     yield _finding(
@@ -463,30 +449,3 @@ def _pose(pieces, width, fit, names) -> Iterator[Finding]:
                 "N m.",
                 "Friction and weight take it up.", "Add `OFFSETS` to the names.", joint,
             )  # fmt: skip
-
-
-def _excitation(pieces, width, names) -> Iterator[Finding]:
-    """Which parameters the motion tells, judged by noise of torques and of readings."""
-    fit = _fit(pieces, width, names, blurred=True)
-    if fit is None:
-        return
-    told, vague, lost = [], [], []
-    for name, value, half in zip(fit.estimate.names, fit.estimate.values, 2 * fit.estimate.errors):
-        if np.isnan(value):
-            lost.append(name)
-        elif half > 0.5 * abs(value):
-            vague.append(name)
-        else:
-            told.append(f"{name} to {significant(max(100 * half / abs(value), 0.1), 1)} %")
-    seen = f"The motion tells {', '.join(told) or 'no parameter by itself'}."
-    seen += f" Not told apart from zero: {', '.join(vague)}." if vague else ""
-    seen += f" It does not tell one by one: {', '.join(lost)}." if lost else ""
-    advice = "Nothing to do. The percentages are rough."
-    if lost:
-        advice = f"Leave {' or '.join(lost)} out, or move so that they matter apart."
-    if not told:
-        advice = "Record longer motions in which both joints speed up and slow down, each its way."
-    yield _finding(
-        "excitation", "note" if told and not lost else "doubtful", seen,
-        "What a motion does not tell comes out at random, and spoils the rest.", advice,
-    )  # fmt: skip

@@ -19,6 +19,7 @@ RIGID = ("a", "b", "d")  #: Base parameters of a horizontal two-link arm, kg m^2
 GRAVITY = ("g1", "g2")  #: Gravity moments of a vertical arm, N m.
 #: Viscous (N m s/rad) and Coulomb (N m) friction of shoulder and elbow.
 FRICTION = ("F_v1", "F_v2", "F_c1", "F_c2")
+OFFSETS = ("offset1", "offset2")  #: Constant torques that are logged, but do not act, N m.
 SLOW = 0.1  #: Below this speed (rad/s) the sign of a joint's friction is not trusted.
 SIGN_SPEED = 0.005  #: Below this estimated speed (rad/s) the sign of a velocity is blurred.
 
@@ -420,7 +421,7 @@ def true_parameters(arm: Arm, effects: Effects, names: Sequence[str]) -> np.ndar
     )
     coulomb = sum(np.asarray(f.level) for f in effects.friction if isinstance(f, CoulombFriction))
     pairs = (*arm.gravity_moments, *np.broadcast_to(viscous, 2), *np.broadcast_to(coulomb, 2))
-    known = dict(zip((*RIGID, *GRAVITY, *FRICTION), (arm.a, arm.b, arm.d, *pairs)))
+    known = dict(zip((*RIGID, *GRAVITY, *FRICTION, *OFFSETS), (arm.a, arm.b, arm.d, *pairs)))
     return np.array([known[name] for name in names])
 
 
@@ -462,7 +463,7 @@ def known_names(names, called: str = "names") -> None:
     if not series(called, names, str):
         raise ValueError(f"{called} must be one or more, got none")
     for name in names:
-        one_of(called, name, (*RIGID, *GRAVITY, *FRICTION))
+        one_of(called, name, (*RIGID, *GRAVITY, *FRICTION, *OFFSETS))
 
 
 def regressor_columns(row: dict, names: Sequence[str], like) -> np.ndarray:

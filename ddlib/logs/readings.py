@@ -276,7 +276,8 @@ def _torque(q, tau, step, name) -> Iterator[Finding]:
     for begin, end in constant(tau):
         inside = 3 <= begin and end <= tau.size - 3 and tau[begin] not in (0, tau.min(), tau.max())
         moved = np.ptp(q[begin:end]) > 0.01 * np.ptp(q)
-        if end - begin >= 10 and inside and moved and abs(tau[end] - tau[end - 1]) > 3 * usual:
+        alone = np.count_nonzero(steps == 0) - (end - begin) < 0.02 * tau.size
+        if end - begin >= 10 and inside and moved and (alone or steps[end - 1] > 3 * usual):
             held.append(np.arange(begin, end))
     for stretches, what, kind in (
         (zeros, "is exactly zero between others", "torque zero"),
@@ -311,13 +312,18 @@ def _limits(q, tau, step, name) -> Iterator[Finding]:
                 "well.",
                 "Compare with the drive's limit; else leave these samples out.", rows,
             )  # fmt: skip
-    high = np.abs(tau).max()
-    small, moves = np.abs(tau) < 0.1 * high, np.diff(q)
+    size, moves = np.abs(tau), np.diff(q)
+    one_sign = tau.min() > -0.01 * size.max() or tau.max() < 0.01 * size.max()
     both_ways = min(moves[moves > 0].sum(), -moves[moves < 0].sum()) > 0.1 * np.abs(moves).sum()
-    touches = np.count_nonzero(np.diff(small.astype(np.int8)) == 1)  # times it comes down to zero
-    one_sign = tau.min() > -0.01 * high or tau.max() < 0.01 * high
-    moved = both_ways and np.abs(moves).sum() > 0.1
-    if one_sign and moved and touches >= 3 and 0.03 < small.mean() < 0.7:
+    if not one_sign or not both_ways or np.ptp(q) < 0.1:
+        return
+    small = size < 0.1 * size.max()
+    edges = np.flatnonzero(np.diff(np.r_[False, small, False].astype(np.int8)))
+    lowest = [b + size[b:e].argmin() for b, e in zip(edges[::2], edges[1::2])]
+    bends = np.abs(size[6:] - 2 * size[3:-3] + size[:-6])
+    at_zero = [bends[k - 3] for k in lowest if 3 <= k < size.size - 3]
+    touches = len(at_zero)
+    if touches >= 3 and np.median(at_zero) > 4 * np.median(bends):  # it is mirrored there
         yield _finding(
             "torque of one sign", "doubtful",
             f"The torque comes down to zero {plural(touches, 'time')} and never changes its sign, "
@@ -330,14 +336,6 @@ def _limits(q, tau, step, name) -> Iterator[Finding]:
 def steady(x) -> bool:
     """Whether values are one value, but for the rounding of a computation."""
     return bool(np.ptp(x) <= 1e-9 * np.abs(x).max())
-
-
-def weak(tau, other) -> bool:
-    """Whether a torque is small beside the other joint's, and noise a third of it or more."""
-    if tau.size < 12 or steady(tau) or tau.std() >= 0.3 * other.std():
-        return False
-    # second differences of white noise have a median of 1.65 times its deviation
-    return bool(np.median(np.abs(np.diff(tau, 2))) > 0.5 * tau.std())
 
 
 def _at_work(q, tau) -> Iterator[Finding]:
@@ -367,26 +365,27 @@ def _at_work(q, tau) -> Iterator[Finding]:
                 "not logged do not. A network has nothing to learn there.",
                 "If the joint has a motor, log its torque.", joint=joint,
             )  # fmt: skip
-        elif weak(torque, other):
-            yield _finding(
-                "little torque", "doubtful",
-                f"The {name}'s torque varies by {torque.std():.2g} N m, where the other's varies "
-                f"by {other.std():.2g} N m, and is noisy.",
-                "Such a run tells the joint's friction and its coupling, not its own inertia.",
-                "Add runs in which this joint is driven.", joint=joint,
-            )  # fmt: skip
 
 
 def _command(q, tau, step, name) -> Iterator[Finding]:
-    """A torque whose fast changes go with those of the velocity: a controller computed it."""
+    """A torque whose fast changes go with those of the velocity: a controller computed it.
+
+    Those of a measured torque do not: an arm's inertia leaves none of them in its angle.
+    """
     if tau.size < 300 or steady(tau):
         return
-    velocity, angle = _follows(np.unwrap(q), tau)
-    if abs(velocity) > ALIKE and abs(velocity) > 0.9 * abs(angle):
+    angle, torque = _fast(np.unwrap(q)), _fast(tau)
+    velocity = _fast(np.diff(np.unwrap(q)))
+    if _alike(torque[1:], torque[:-1]) > 0.5:  # smooth, which goes with anything
+        return
+    late = range(-2, 3)  # samples
+    with_velocity = max((_alike(np.roll(torque[1:], k), velocity) for k in late), key=abs)
+    with_angle = max((_alike(np.roll(torque, k), angle) for k in late), key=abs)
+    if abs(with_velocity) > max(ALIKE, 0.9 * abs(with_angle)):
         yield _finding(
             "command", "doubtful",
             f"The {name}'s torque looks like a command: its fast changes go with those of the "
-            f"measured velocity ({velocity:+.2f}).",
+            f"measured velocity ({with_velocity:+.2f}).",
             "What the motor gave may differ by half; then inertias and friction are those of the "
             "command.",
             "Log the measured current, or leave these runs out of a fit. A fast drive on the same "
@@ -394,31 +393,10 @@ def _command(q, tau, step, name) -> Iterator[Finding]:
         )  # fmt: skip
 
 
-def _follows(q, tau) -> tuple[float, float]:
-    """How the fast changes of a torque go with those of velocity and angle: two correlations.
-
-    The velocity is that of the log, from each sample to the next, up to two samples early or late.
-    Those of a measured torque go with neither: an arm's inertia leaves none of them in the angle.
-    """
-    angle, torque = _fast(q)[1:], _fast(tau)[1:]
-    velocity = _fast(np.diff(q))
-    blocks = max(2, min(20, velocity.size // 40))
-    torques = np.array_split(torque[2:-2], blocks)
-    # smooth signals leave a smooth rest, which goes with anything
-    rough = np.median([x[1:] @ x[:-1] / (x @ x + 1e-300) for x in torques]) < 0.5
-    best = [0.0, 0.0]
-    if not rough:
-        return tuple(best)
-    for late in range(-2, 3):
-        inside = slice(2 - late, velocity.size - 2 - late)
-        for n, x in enumerate((velocity, angle)):
-            # no start and no stop decides: the median over stretches of time
-            pairs = zip(torques, np.array_split(x[inside], blocks))
-            alike = float(
-                np.median([a @ b / (np.sqrt(a @ a * (b @ b)) + 1e-300) for a, b in pairs])
-            )
-            best[n] = alike if abs(alike) > abs(best[n]) else best[n]
-    return tuple(best)
+def _alike(x, y) -> float:
+    """Correlation of two series of mean 0, as a median over stretches: no single jump decides."""
+    pairs = zip(*(np.array_split(part, max(2, min(20, x.size // 40))) for part in (x, y)))
+    return float(np.median([a @ b / (np.sqrt(a @ a * (b @ b)) + 1e-300) for a, b in pairs]))
 
 
 def _fast(x) -> np.ndarray:

@@ -23,9 +23,9 @@ from beyond.figures import maps
 from ddlib import figures as shared
 from ddlib.dynamics import CMU_DD_ARM_II, Operations
 from ddlib.figures import COLOURS, INK
-from ddlib.identification import Equations, least_squares
+from ddlib.identification import Equations, check_recording, least_squares
 from ddlib.learning import Weights
-from ddlib.logs import Log, LoggedRun, check_recording
+from ddlib.logs import Log, LoggedRun, resample
 from workshop.chapters import (
     convolution_filters as filters,
     dynamics,
@@ -164,7 +164,7 @@ FIGURES = {
         ],
         upon="#ffffff",
     ),
-    "checked": figure(lambda: shared.checked(check_recording(Log((SPIKED,))))),
+    "checked": figure(lambda: shared.checked(check_recording(resample(Log((SPIKED,)))))),
     "decomposed, one": figure(lambda: shared.decomposed(FILTERS["unit 0"], 0.01), upon="#ffffff"),
     "arm_sketch": figure(
         partial(dynamics.arm_sketch, CMU_DD_ARM_II, [0.6, 0.9]),
