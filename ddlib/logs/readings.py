@@ -175,18 +175,18 @@ def _angle(q, tau, step, name) -> Iterator[Finding]:
     for begin, end, how in lost:  # a line across what was lost, so that its ends are no spikes
         inside = np.arange(begin + (how == "held"), end)
         whole[inside] = np.interp(inside, [inside[0] - 1, end], whole[[inside[0] - 1, end]])
-    yield from _spikes("spike", whole, "rad", 0.01 * np.ptp(whole))
+    yield from _spikes(whole, 0.01 * np.ptp(whole))
 
 
-def _spikes(kind, x, unit, least) -> Iterator[Finding]:
+def _spikes(x, least) -> Iterator[Finding]:
     """Single wrong samples, those that matter apart from those that hardly do."""
     rows, sizes = spikes(x)
     for severity, chosen in (("wrong", sizes > least), ("doubtful", sizes <= least)):
         if chosen.any():
             yield _finding(
-                kind, severity,
-                f"{plural(int(chosen.sum()), 'sample')} stand alone, by up to "
-                f"{sizes[chosen].max():.2g} {unit}.",
+                "spike", severity,
+                f"{plural(int(chosen.sum()), 'sample')} out of line with those beside it, by up to "
+                f"{sizes[chosen].max():.2g} rad.",
                 "One wrong sample acts on every filter and bump around it.",
                 "Take these samples out of the file, and read it again.", rows[chosen],
             )  # fmt: skip
