@@ -142,7 +142,7 @@ def _parted(run: LoggedRun, longest_gap: int, notes) -> list[LoggedRun]:
 
 def _usual_step(steps) -> float:
     """The step at which samples were taken, though some are missing or stamps uneven."""
-    usual = float(np.median(steps))
+    usual = float(np.percentile(steps, 50, method="lower"))  # a step that occurs
     multiples = np.round(steps / usual)
     if multiples.min() > 0 and (multiples <= 3).mean() > 0.9:
         return usual
@@ -299,7 +299,7 @@ def _of_one_length(runs, step, seconds, notes) -> list[LoggedRun]:
     """All runs cut to one length: `seconds`, or the one that keeps most samples."""
     lengths = np.array([len(run.t) for run in runs])
     if seconds is None:
-        length = int(max(np.unique(lengths), key=lambda n: n * (lengths >= n).sum()))
+        length = int(max(np.sort(lengths)[::-1], key=lambda n: n * (lengths >= n).sum()))
         counts = np.minimum(lengths // length, 1)
     else:
         number("seconds", seconds, 3 * step, lengths.max() * step)
