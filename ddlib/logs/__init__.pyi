@@ -9,6 +9,7 @@ from .log import (
 )
 from .reading import (
     read_csv as read_csv,
+    read_frame as read_frame,
     read_log as read_log,
     write_csv as write_csv,
 )
