@@ -50,7 +50,6 @@ class LoggedRecording(Recording):
     names: tuple[str, ...] = ()  #: Each run's file, and its name in it.
     lines: np.ndarray | None = None  #: Nearest line of the file for each sample, (runs, time).
     notes: tuple[str, ...] = ()  #: Sentences: what reading and resampling changed.
-    joints: int = 2  #: Of the arm in the file.
     margin: int = 0  #: Samples at each end that windows need and that are no cases.
     joints: int = 2  #: For how many joints the file has such columns; two of them were picked.
 

@@ -9,7 +9,7 @@ import pytest
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import CoulombFriction, Effects, Noise, Quantisation, ViscousFriction
-from ddlib.identification import by_kalman, by_modulation, least_squares
+from ddlib.identification import by_kalman, by_modulation
 from ddlib.logs import DoubtfulRecording, Log, LoggedRecording, LoggedRun, resample, warn_of
 from ddlib.logs.readings import readings, spikes
 from ddlib.simulation import record
