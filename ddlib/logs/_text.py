@@ -39,8 +39,6 @@ _NOT_TEXT = (  # first bytes, end of the name, and what to do with such a file
     (b"SQLite", "", "if it is a ROS bag, read_frame takes the arrays that package rosbags reads"),
     (b"\x89MCAP", "", "read_frame takes the arrays that package rosbags reads from it"),
 )
-
-
 _LOG = "a log must have a line for each time, and on it a column for each quantity"
 
 
@@ -156,8 +154,8 @@ def _encoding(raw: bytes) -> str:
 
 
 def _layout(sample: list[str], separators) -> tuple[str, tuple[int, int, int]]:
-    """What stands between cells, and the shape that most lines have: those with most numbers."""
-    layouts = []
+    """What stands between cells, and the shape of most lines: of those with most numbers."""
+    layouts = [(",", (0, 0, 0), 0)]
     for sep in separators:
         shapes = Counter(_shape(_cells(line, sep)) for line in sample)
         layouts += [(sep, shape, count) for shape, count in shapes.items()]
@@ -193,7 +191,8 @@ def _fits(row: str, sep: str, named: int, width: int) -> bool:
     if '"' not in row and named <= count <= width:
         return True
     cells = _cells(row, sep)
-    return row.count('"') % 2 == 0 and len(cells) >= named and not any(cells[width:])
+    whole = row.count('"') % 2 == 0 and '"' not in "".join(cells)
+    return whole and len(cells) >= named and not any(cells[width:])
 
 
 def _frame(rows, sep, decimal, width):
@@ -204,11 +203,9 @@ def _frame(rows, sep, decimal, width):
     if tuple(map(int, pandas.__version__.split(".")[:2])) < (3, 1):
         exact["float_precision"] = "round_trip"  # later versions need not be told
     return pandas.read_csv(
-        io.BytesIO("\n".join(rows).encode()),
+        io.BytesIO("\n".join([sep.join(map(str, range(width))), *rows]).encode()),
         sep=r"\s+" if sep == " " else sep,
         decimal=decimal,
-        header=None,
-        names=range(width),
         usecols=range(width),
         index_col=False,
         skipinitialspace=True,
