@@ -136,8 +136,8 @@ def _check_rates(runs) -> None:
     if off.max() > _OTHER:
         k = int(np.argmax(off))
         raise fault(
-            f"{shortened(runs[k].name, 100)}: steps of {steps[k]:g} s, where {np.median(steps):g} s "
-            f"are usual; say by step= to which all are brought"
+            f"{shortened(runs[k].name, 100)}: steps of {steps[k]:g} s, where {np.median(steps):g} "
+            f"s are usual; say by step= to which all are brought"
         )
 
 
@@ -150,9 +150,9 @@ def _parted(run: LoggedRun, longest_gap: int, notes) -> list[LoggedRun]:
     parts = np.split(np.arange(len(run.t)), cuts)
     lost = sum(len(part) for part in parts if len(part) < 3)
     notes.append(
-        f"{shortened(run.name, 100)}: parted at {plural(cuts.size, 'gap')} of more than {longest_gap} steps, the "
-        f"longest of {steps.max():.3g} s before line {run.lines[steps.argmax() + 1]}; "
-        f"{plural(lost, 'sample')} between gaps left out."
+        f"{shortened(run.name, 100)}: parted at {plural(cuts.size, 'gap')} of more than "
+        f"{longest_gap} steps, the longest of {steps.max():.3g} s before line "
+        f"{run.lines[steps.argmax() + 1]}; {plural(lost, 'sample')} between gaps left out."
     )
     return [
         _cut(run, part, f"{run.name}, part {k + 1}")
