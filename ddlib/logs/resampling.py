@@ -122,10 +122,10 @@ def _check_times(run: LoggedRun) -> None:
         raise fault(f"{name}: must have three samples or more, got {len(run.t)}")
     if not (steps > 0).all():
         k = int(np.argmin(steps > 0))
+        advice = "skip_bad=True leaves such lines out; run= is a column that tells runs apart"
         raise fault(
             f"{name}, line {run.lines[k + 1]}: time must grow, but {run.t[k]:.9g} s is followed by "
-            f"{run.t[k + 1]:.9g} s, at {plural(int((steps <= 0).sum()), 'place')} in all; "
-            f"skip_bad=True leaves such lines out, and run= names a column that tells runs apart"
+            f"{run.t[k + 1]:.9g} s, one of {plural(int((steps <= 0).sum()), 'place')}; {advice}"
         )
 
 
@@ -135,10 +135,9 @@ def _check_rates(runs) -> None:
     off = np.abs(steps / np.median(steps) - 1)
     if off.max() > _OTHER:
         k = int(np.argmax(off))
-        raise fault(
-            f"{shortened(runs[k].name, 100)}: steps of {steps[k]:g} s, where {np.median(steps):g} "
-            f"s are usual; say by step= to which all are brought"
-        )
+        these = f"steps of {steps[k]:g} s, where {np.median(steps):g} s are usual"
+        name = shortened(runs[k].name, 100)
+        raise fault(f"{name}: {these}; say by step= to which all are brought")
 
 
 def _parted(run: LoggedRun, longest_gap: int, notes) -> list[LoggedRun]:
@@ -154,11 +153,8 @@ def _parted(run: LoggedRun, longest_gap: int, notes) -> list[LoggedRun]:
         f"{longest_gap} steps, the longest of {steps.max():.3g} s before line "
         f"{run.lines[steps.argmax() + 1]}; {plural(lost, 'sample')} between gaps left out."
     )
-    return [
-        _cut(run, part, f"{run.name}, part {k + 1}")
-        for k, part in enumerate(parts)
-        if len(part) > 2
-    ]
+    cut = [_cut(run, part, f"{run.name}, part {k + 1}") for k, part in enumerate(parts)]
+    return [part for part in cut if len(part.t) > 2]
 
 
 def _usual_step(steps) -> float:
@@ -251,10 +247,8 @@ def _common_step(pieces, grids, step, notes) -> float:
         return number("step", step, steps.min() / 100, max(np.ptp(run.t) for run in pieces) / 2)
     mean = float(np.average(steps, weights=[len(piece.t) for piece in pieces]))
     if np.ptp(steps) > 1e-4 * mean and not any(grid.uneven for grid in grids):
-        notes.append(
-            f"runs have steps of {steps.min():.6g} to {steps.max():.6g} s; all are taken as "
-            f"{mean:.6g} s."
-        )
+        theirs = f"{steps.min():.6g} to {steps.max():.6g} s"
+        notes.append(f"runs have steps of {theirs}; all are taken as {mean:.6g} s.")
     return mean
 
 
