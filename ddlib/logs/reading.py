@@ -316,11 +316,12 @@ def _places(table: Table, wanted: dict) -> dict[str, int]:
     if missing and heads == [str(k) for k in range(len(heads))]:
         raise fault(
             f"{table.where}: {len(heads)} cells, and no line of as many heads above; give columns "
-            f'by places from 0, like columns={{"time": 0}}; if commas are decimal signs, too, write '
-            f"semicolons between cells"
+            f'by places from 0, like columns={{"time": 0}}; if commas are decimal signs, too, '
+            f"write semicolons between cells"
         )
     if missing:
-        sought, known = shortened(", ".join(missing), 60), shortened(", ".join(heads), 90)
+        sought = shortened(", ".join(missing), 60)
+        known = shortened(", ".join(filter(None, heads)), 90)
         advice = "say what it is called by columns={...}"
         rate = ", or give rate=, in Hz" if missing == ["time"] else ""
         raise fault(f"{table.where}: no column {sought} in {known}; {advice}{rate}")
