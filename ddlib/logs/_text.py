@@ -10,6 +10,7 @@ import lzma
 import zlib
 from collections import Counter
 from dataclasses import dataclass, field
+from itertools import zip_longest
 
 import numpy as np
 
@@ -38,8 +39,6 @@ _NOT_TEXT = (  # first bytes, end of the name, and what to do with such a file
     (b"SQLite", "", "if it is a ROS bag, read_frame takes the arrays that package rosbags reads"),
     (b"\x89MCAP", "", "read_frame takes the arrays that package rosbags reads from it"),
 )
-
-
 _LOG = "a log must have a line for each time, and on it a column for each quantity"
 
 
@@ -79,17 +78,18 @@ def read_text(path: str, separator, decimal, encoding, skip_bad: bool) -> Table:
         raise fault(f"{name}, line {longest + 1}: has more than {_WIDEST:,} characters; {_LOG}")
     spoken = [k for k in filled if lines[k].lstrip()[0] not in "#%"]
     sample = [lines[k] for k in spoken[:: len(spoken) // 100 + 1]]
-    sep = " " if separator == r"\s+" else separator or _separator(sample)
+    given = " " if separator == r"\s+" else separator
+    sep, usual = _layout(sample, _SEPARATORS if given is None else [given])
     parted = f"if cells are not parted by {_SEPARATORS.get(sep, repr(sep))}, say separator="
-    width, least = _size([_cells(line, sep) for line in sample])
-    if width < 2:
+    if usual[1] < 2:
         raise fault(f"{name}: has no line of two numbers; {_LOG}; {parted}")
-    start = next(k for k in spoken if _is_sample(_cells(lines[k], sep), width, least))
+    start = next(k for k in spoken if _shape(_cells(lines[k], sep)) == usual)
     heads, used = _heads(lines, [k for k in filled if k < start], sep, _cells(lines[start], sep))
     body = [k for k in spoken if k >= start or (used and k > used[-1])]
     rows = [lines[k] for k in body]
-    named = max((k + 1 for k, head in enumerate(heads) if head), default=width)
-    misfits = [k for k, row in enumerate(rows) if not _fits(row, sep, named, width)]
+    width = max(usual[0], len(heads))
+    least = min(usual[0], len(heads) or width)
+    misfits = [k for k, row in enumerate(rows) if not _fits(row, sep, least, width)]
     few = len(misfits) < len(rows) / 2
     if misfits and not (skip_bad and few):
         raise fault(
@@ -100,7 +100,8 @@ def read_text(path: str, separator, decimal, encoding, skip_bad: bool) -> Table:
         rows[k] = "nan"
     frame = _frame(rows, sep, decimal or _decimal(sample, sep), width)
     where = f"{name}, line {(used or [start])[0] + 1}"
-    frame = frame.set_axis(heads or range(width), axis=1).set_axis(np.array(body) + 1)
+    heads += [""] * (width - len(heads)) if heads else range(width)
+    frame = frame.set_axis(heads, axis=1).set_axis(np.array(body) + 1)
     table = Table(path, frame, where, misfits=len(misfits))
     if passed := len(filled) - len(body) - len(used):
         table.notes.append(
@@ -152,38 +153,36 @@ def _encoding(raw: bytes) -> str:
     return "utf-8"
 
 
-def _separator(sample: list[str]) -> str:
-    """What stands between cells: with it, most of them are numbers and fewest are not."""
-
-    def score(sep):
-        rows = [_cells(line, sep) for line in sample]
-        return sum(2 * _numbers(row) - sum(map(bool, row)) for row in rows)
-
-    return max(_SEPARATORS, key=score)
-
-
-def _size(rows) -> tuple[int, float]:
-    """How many cells a row of samples has, and at least how many of them are numbers."""
-    least = max(map(_numbers, rows), default=0) / 2
-    widths = Counter(len(row) for row in rows if _numbers(row) >= least > 0)
-    return max(widths, key=widths.get, default=0), least
+def _layout(sample: list[str], separators) -> tuple[str, tuple[int, int, int]]:
+    """What stands between cells, and the shape of most lines: of those with most numbers."""
+    layouts = [(",", (0, 0, 0), 0)]
+    for sep in separators:
+        shapes = Counter(_shape(_cells(line, sep)) for line in sample)
+        layouts += [(sep, shape, count) for shape, count in shapes.items()]
+    sep, shape, _ = max(layouts, key=lambda x: (x[2] * x[1][1], -x[2] * x[1][2]))
+    return sep, shape
 
 
 def _heads(lines, above, sep, first) -> tuple[list[str], list[int]]:
     """Heads above the `first` row, with units below them, and the lines in which they stand."""
-    units, used = [""] * len(first), []
+    units, used = [], []
     for k in reversed(above):
         line = lines[k].strip() if sep == " " else lines[k]
         row = _cells(line.lstrip("#% \t") if line.lstrip()[0] in "#%" else line, sep)
         if sep == " " and len(row) != len(first):  # a unit belongs to the name before it
-            row = _cells(" ".join(row).replace(" [", "[").replace(" (", "("), sep)
-        if any(row[len(first) :]) or any(first[len(row) :]):
+            joined = " ".join(row).replace(" [", "[").replace(" (", "(").replace("N m", "Nm")
+            row = _cells(joined, sep)
+        while row and not row[-1]:
+            row.pop()
+        unnamed, unfilled = any(first[len(row) :]), len(row) > len(first)
+        if unnamed or (unfilled and sep == " ") or 2 * _numbers(row) > _numbers(first):
             continue
-        row = [" ".join(head.split()) for head in (row + first)[: len(first)]]
+        row = [" ".join(head.split()) for head in row]
         if used or not are_units(row):
-            return [f"{h} [{u}]" if u else h for h, u in zip(row, units)], [k, *used]
+            pairs = zip_longest(row, units, fillvalue="")
+            return [f"{head} [{unit}]" if unit else head for head, unit in pairs], [k, *used]
         units, used = [unit.strip("[]()") for unit in row], [k]
-    return units * len(used), used
+    return [f"[{unit}]" if unit else "" for unit in units], used
 
 
 def _fits(row: str, sep: str, named: int, width: int) -> bool:
@@ -192,7 +191,8 @@ def _fits(row: str, sep: str, named: int, width: int) -> bool:
     if '"' not in row and named <= count <= width:
         return True
     cells = _cells(row, sep)
-    return row.count('"') % 2 == 0 and len(cells) >= named and not any(cells[width:])
+    whole = row.count('"') % 2 == 0 and '"' not in "".join(cells)
+    return whole and len(cells) >= named and not any(cells[width:])
 
 
 def _frame(rows, sep, decimal, width):
@@ -203,11 +203,9 @@ def _frame(rows, sep, decimal, width):
     if tuple(map(int, pandas.__version__.split(".")[:2])) < (3, 1):
         exact["float_precision"] = "round_trip"  # later versions need not be told
     return pandas.read_csv(
-        io.BytesIO("\n".join(rows).encode()),
+        io.BytesIO("\n".join([sep.join(map(str, range(width))), *rows]).encode()),
         sep=r"\s+" if sep == " " else sep,
         decimal=decimal,
-        header=None,
-        names=range(width),
         usecols=range(width),
         index_col=False,
         skipinitialspace=True,
@@ -246,5 +244,7 @@ def _numbers(row: list[str]) -> int:
     return sum(map(_is_number, row))
 
 
-def _is_sample(row: list[str], width: int, least: float) -> bool:
-    return len(row) == width and _numbers(row) >= least
+def _shape(row: list[str]) -> tuple[int, int, int]:
+    """How many cells a row has, how many are numbers, and how many are something else."""
+    numbers = _numbers(row)
+    return len(row), numbers, len(row) - row.count("") - numbers

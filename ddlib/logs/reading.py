@@ -240,10 +240,9 @@ def _as_frame(frame):
             part.columns = [f"{head}{k}" if len(joints) > 1 else str(head) for k in joints]
             parts.append(part)
     if len({len(part) for part in parts}) != 1:
-        lengths = ", ".join(f"{part.columns[0]} {len(part)}" for part in parts)
+        got = ", ".join(f"{part.columns[0]} {len(part)}" for part in parts) or "none"
         raise fault(
-            f"frame must hold arrays (samples,) or (samples, joint) of as many samples, got "
-            f"{lengths or 'none'}"
+            f"frame must hold arrays (samples,) or (samples, joint) of one length, got {got}"
         )
     return pandas.concat(parts, axis=1)
 
@@ -282,10 +281,8 @@ def _log(tables, columns, units, factors, rate, run, absolute_elbow, skip_bad) -
             table.notes.append("q2 was absolute; q1 was subtracted from it.")
         joints = _joints_like(table, places)
         if joints > 2:
-            table.notes.append(
-                f"there are {joints} such joints; these equations are of two with parallel axes, "
-                f"all others locked."
-            )
+            others = "these equations are of two with parallel axes, all others locked"
+            table.notes.append(f"there are {joints} such joints; {others}.")
         runs += _runs(table, data, joints, skip_bad)
         notes += [f"{shortened(table.path, 100)}: {note}" for note in table.notes]
     return Log(tuple(runs), tuple(notes))
@@ -304,33 +301,30 @@ def _places(table: Table, wanted: dict) -> dict[str, int]:
         is_place = isinstance(head, (int, np.integer))
         found = [head] if is_place else _named(heads, name, str(head))
         if len(found) > 1:
+            choice = f'at places {found} from 0; choose by columns={{"{name}": {found[0]}}}'
             raise fault(
-                f"{table.where}: column {shortened(head)} is there {len(found)} times, at places "
-                f'{found}, counted from 0; choose by columns={{"{name}": {found[0]}}}'
+                f"{table.where}: column {shortened(head)} is there more than once, {choice}"
             )
-        if found and found[0] in places.values():
-            raise fault(
-                f"columns: {name} must have a column of its own, got {shortened(head)!r} for two; "
-                f"join files of angles and of torques by pandas.merge, for read_frame"
-            )
-        if found:
+        if not found:
+            missing.append(str(head))
+        elif found[0] in places.values():
+            merged = "files of angles and of torques are joined by pandas.merge, for read_frame"
+            raise fault(f"columns: {name} must have a column of its own, got {head!r}; {merged}")
+        else:
             last = len(heads) - 1
             places[name] = integer(f"columns: the place of {name}", found[0], 0, last)
-        else:
-            missing.append(str(head))
     if missing and heads == [str(k) for k in range(len(heads))]:
         raise fault(
-            f"{table.where}: {plural(len(heads), 'cell')}, and no line of as many heads "
-            f'above; give columns by places from 0, like columns={{"time": 0}}; if commas are '
-            f"decimal signs, too, write semicolons between cells"
+            f"{table.where}: {len(heads)} cells, and no line of as many heads above; give columns "
+            f'by places from 0, like columns={{"time": 0}}; if commas are decimal signs, too, '
+            f"write semicolons between cells"
         )
     if missing:
+        sought = shortened(", ".join(missing), 60)
         known = shortened(", ".join(filter(None, heads)), 90)
+        advice = "say what it is called by columns={...}"
         rate = ", or give rate=, in Hz" if missing == ["time"] else ""
-        raise fault(
-            f"{table.where}: no column {shortened(', '.join(missing), 60)} in {known}; say what it "
-            f"is called by columns={{...}}{rate}"
-        )
+        raise fault(f"{table.where}: no column {sought} in {known}; {advice}{rate}")
     return places
 
 
@@ -349,10 +343,10 @@ def _finite(table: Table, data, places: dict[str, int], skip_bad: bool):
         cells, data[name] = data[name], _numbers(data[name])
         bad = np.flatnonzero(~np.isfinite(data[name]))
         if bad.size and not skip_bad:
-            row, head = bad[0], table.frame.columns[places[name]]
+            place = f"{shortened(table.path, 100)}, {table.row} {data.index[bad[0]]}"
+            head, cell = table.frame.columns[places[name]], shortened(cells.iloc[bad[0]])
             raise fault(
-                f"{shortened(table.path, 100)}, {table.row} {data.index[row]}, column "
-                f"{shortened(head)}: must be a finite number, got {shortened(cells.iloc[row])!r}; "
+                f"{place}, column {shortened(head)}: must be a finite number, got {cell!r}; "
                 f"skip_bad=True leaves such {table.row}s out"
             )
         fine[bad] = False
@@ -396,10 +390,8 @@ def _in_si(table: Table, name: str, place: int, values, unit, factor) -> np.ndar
         raise fault(f"{where}: is a current; {advice}")
     farthest = values[np.argmax(np.abs(values))]
     if unit is None and name in _JOINTS["q"] and abs(farthest) > _TURNS:
-        raise fault(
-            f"{where}: goes to {farthest:g}: degrees, or radians of a joint that turns on? Say by "
-            f'units={{"{name}": "deg"}} or {{"{name}": "rad"}}'
-        )
+        advice = f'say by units={{"{name}": "deg"}} or {{"{name}": "rad"}}'
+        raise fault(f"{where}: goes to {farthest:g}: degrees, or a joint that turns on? {advice}")
     return values
 
 
@@ -424,10 +416,8 @@ def _runs(table: Table, data, joints: int, skip_bad: bool) -> list[LoggedRun]:
             of_run = f"{name}, {word} {k + 1}" if begins.size else name
             runs.append(LoggedRun(of_run, t[rows], q[rows], tau[rows], lines[rows], joints))
     if begun:
-        table.notes.append(
-            f"time begins again at {plural(len(begun), 'place')}, the first at {table.row} "
-            f"{begun[0]}; a run begins there."
-        )
+        places = f"{plural(len(begun), 'place')}, the first at {table.row} {begun[0]}"
+        table.notes.append(f"time begins again at {places}; a run begins there.")
     if late:
         table.notes.append(f"{plural(late, table.row)} not later than the one before left out.")
     return runs

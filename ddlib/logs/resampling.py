@@ -88,6 +88,10 @@ def on_one_grid(log, step, longest_gap, seconds, trust_stamps) -> LoggedRecordin
     flag("trust_stamps", trust_stamps)
     if not log.runs:
         raise ValueError("log must hold one run or more, got none")
+    for run in log.runs:
+        _check_times(run)
+    if step is None:
+        _check_rates(log.runs)
     notes = list(log.notes)
     pieces = [piece for run in log.runs for piece in _parted(run, longest_gap, notes)]
     if not pieces:
@@ -111,33 +115,46 @@ def on_one_grid(log, step, longest_gap, seconds, trust_stamps) -> LoggedRecordin
     return _recording(runs, target, notes)
 
 
-def _parted(run: LoggedRun, longest_gap: int, notes) -> list[LoggedRun]:
-    """A run parted at its gaps, without parts of less than three samples."""
+def _check_times(run: LoggedRun) -> None:
+    """Refuse a run of which no grid can be made."""
     name, steps = shortened(run.name, 100), np.diff(run.t)
     if len(run.t) < 3:
         raise fault(f"{name}: must have three samples or more, got {len(run.t)}")
     if not (steps > 0).all():
         k = int(np.argmin(steps > 0))
+        advice = "skip_bad=True leaves such lines out; run= is a column that tells runs apart"
         raise fault(
             f"{name}, line {run.lines[k + 1]}: time must grow, but {run.t[k]:.9g} s is followed by "
-            f"{run.t[k + 1]:.9g} s, at {plural(int((steps <= 0).sum()), 'place')} in all; "
-            f"skip_bad=True leaves such lines out, and run= names a column that tells runs apart"
+            f"{run.t[k + 1]:.9g} s, one of {plural(int((steps <= 0).sum()), 'place')}; {advice}"
         )
+
+
+def _check_rates(runs) -> None:
+    """Refuse runs of different rates."""
+    steps = np.array([_usual_step(np.diff(run.t)) for run in runs])
+    off = np.abs(steps / np.median(steps) - 1)
+    if off.max() > _OTHER:
+        k = int(np.argmax(off))
+        these = f"steps of {steps[k]:g} s, where {np.median(steps):g} s are usual"
+        name = shortened(runs[k].name, 100)
+        raise fault(f"{name}: {these}; say by step= to which all are brought")
+
+
+def _parted(run: LoggedRun, longest_gap: int, notes) -> list[LoggedRun]:
+    """A run parted at its gaps, without parts of less than three samples."""
+    steps = np.diff(run.t)
     cuts = np.flatnonzero(steps > (longest_gap + 0.5) * _usual_step(steps)) + 1
     if not cuts.size:
         return [run]
     parts = np.split(np.arange(len(run.t)), cuts)
     lost = sum(len(part) for part in parts if len(part) < 3)
     notes.append(
-        f"{name}: parted at {plural(cuts.size, 'gap')} of more than {longest_gap} steps, the "
-        f"longest of {steps.max():.3g} s before line {run.lines[steps.argmax() + 1]}; "
-        f"{plural(lost, 'sample')} between gaps left out."
+        f"{shortened(run.name, 100)}: parted at {plural(cuts.size, 'gap')} of more than "
+        f"{longest_gap} steps, the longest of {steps.max():.3g} s before line "
+        f"{run.lines[steps.argmax() + 1]}; {plural(lost, 'sample')} between gaps left out."
     )
-    return [
-        _cut(run, part, f"{run.name}, part {k + 1}")
-        for k, part in enumerate(parts)
-        if len(part) > 2
-    ]
+    cut = [_cut(run, part, f"{run.name}, part {k + 1}") for k, part in enumerate(parts)]
+    return [part for part in cut if len(part.t) > 2]
 
 
 def _usual_step(steps) -> float:
@@ -182,7 +199,7 @@ def _grid(run: LoggedRun, trust_stamps: bool, notes) -> _Grid:
         return in_a_row
     else:
         rough = [_roughness(run.q, grid.count) for grid in fits]
-        grid, what = fits[-1 if rough[-1] < 0.9 * rough[0] else 0], "are rounded; taken as"
+        grid, what = fits[-1 if rough[-1] < 0.95 * rough[0] else 0], "are rounded; taken as"
     if grid.off > _SMALL * grid.step:
         notes.append(
             f"{name}: {stamps} {what} samples at even steps of {grid.step:.6g} s, from which they "
@@ -217,10 +234,10 @@ def _grain(t) -> float:
 
 
 def _roughness(q, count) -> float:
-    """Mean square of how far angles lie from straight lines between their neighbours."""
+    """How far angles lie from straight lines between their neighbours, in all."""
     share = (count[1:-1] - count[:-2]) / (count[2:] - count[:-2])
     between = q[:-2] + (q[2:] - q[:-2]) * share[:, None]
-    return float(((q[1:-1] - between) ** 2).mean())
+    return float(np.linalg.norm(q[1:-1] - between))
 
 
 def _common_step(pieces, grids, step, notes) -> float:
@@ -229,17 +246,9 @@ def _common_step(pieces, grids, step, notes) -> float:
     if step is not None:  # three samples at least, and no flood of them
         return number("step", step, steps.min() / 100, max(np.ptp(run.t) for run in pieces) / 2)
     mean = float(np.average(steps, weights=[len(piece.t) for piece in pieces]))
-    other = int(np.argmax(np.abs(steps / np.median(steps) - 1)))
-    if abs(steps[other] / np.median(steps) - 1) > _OTHER:
-        raise fault(
-            f"{shortened(pieces[other].name, 100)}: steps of {steps[other]:g} s, where "
-            f"{np.median(steps):g} s are usual; say by step= to which all are brought"
-        )
     if np.ptp(steps) > 1e-4 * mean and not any(grid.uneven for grid in grids):
-        notes.append(
-            f"runs have steps of {steps.min():.6g} to {steps.max():.6g} s; all are taken as "
-            f"{mean:.6g} s."
-        )
+        theirs = f"{steps.min():.6g} to {steps.max():.6g} s"
+        notes.append(f"runs have steps of {theirs}; all are taken as {mean:.6g} s.")
     return mean
 
 
@@ -251,9 +260,10 @@ def _even(run: LoggedRun, grid: _Grid, target: float, notes) -> LoggedRun:
         step = step if lower else target
         run = _at(run, _points(run.t, step))
     elif grid.missing or grid.off > _SMALL * step:
-        taken = replace(run, t=run.t[0] + step * grid.count)
-        run = _at(taken, run.t[0] + step * np.arange(grid.count[-1] + 1))
-        run.q[grid.count], run.tau[grid.count] = taken.q, taken.tau  # to the last digit
+        taken = run = replace(run, t=run.t[0] + step * grid.count)
+        if grid.missing:
+            run = _at(taken, taken.t[0] + step * np.arange(grid.count[-1] + 1))
+            run.q[grid.count], run.tau[grid.count] = taken.q, taken.tau  # to the last digit
     if abs(step / target - 1) <= max(_ALIKE, grid.grain / (step * len(run.t))):
         return run
     finer = ", finer than logged: nothing is gained" if target < step else ""
@@ -302,8 +312,11 @@ def _of_one_length(runs, step, seconds, notes) -> list[LoggedRun]:
         length = int(max(np.sort(lengths)[::-1], key=lambda n: n * (lengths >= n).sum()))
         counts = np.minimum(lengths // length, 1)
     else:
-        number("seconds", seconds, 3 * step, lengths.max() * step)
         length = round(seconds / step)
+        if not 3 <= length <= lengths.max():
+            raise ValueError(
+                f"seconds must lie in [{3 * step:g}, {lengths.max() * step:g}], got {seconds:g}"
+            )
         counts = lengths // length
     cut = []
     for run, count in zip(runs, counts):

@@ -208,35 +208,40 @@ def test_other_files_are_read_as_their_error_says(name, save, load, tmp_path):
 
 ERRORS = [
     (table("stamp,q1,q2,tau1,tau2"), {},
-     r", line 1: no column time in stamp, q1, q2, tau1, tau2; say what it is called by "
+     r"own.csv, line 1: no column time in stamp, q1, q2, tau1, tau2; say what it is called by "
      r"columns=\{...\}, or give rate=, in Hz"),
-    (table("time,q1,q2,a,b"), {}, r", line 1: no column tau1, tau2 in time, q1, q2, a, b; say"),
+    (table("time,q1,q2,a,b"), {}, r"own.csv, line 1: no column tau1, tau2 in time, q1, q2, a, b"),
     (table("time,q1,q2,q1,tau1"), {},
-     r', line 1: column q1 is there 2 times, at places \[1, 3\], .* columns=\{"q1": 1\}'),
-    (table(point=","), {}, r", line 2: 10 cells, and no line of as many heads above; .* decimal"),
-    (table("time,q1,q2"), {}, r", line 2: 5 cells, and no line of as many heads above; give"),
-    (table("#"), {}, r', line 2: 5 cells, and no line of as many heads .*columns=\{"time": 0\}'),
-    (table() + "0.6,1,2\n", {}, r", line 62: 3 cells, where 5 are usual; skip_bad=True leaves"),
-    (table() + '0.6,"1,2,3,4\n', {}, r", line 62: 2 cells, where 5 are usual"),
-    (table(sep="\t"), {"separator": ","}, r": has no line of two numbers; .* say separator="),
-    ("\n".join(whole(0, 1)), {}, r": has no line of two numbers; a log must have a line for each"),
-    (table() + "0.6,1,NaN,1,1\n", {},
-     r", line 62, column q2: must be a finite number, got 'nan'; skip_bad=True leaves such lines"),
-    (table() + "0.6,1,1,5 Nm,\n", {}, r", line 62, column tau1: must be .* got '5 Nm'"),
-    (" \n\n", {}, r": is empty"),
-    (HEAD + "\n0,1,1,1,1", {}, r": must have three samples or more, got 1"),
-    (b"a\0\0\1\2\3", {}, r": is no text file; read_frame takes"),
+     r'own.csv, line 1: column q1 is there more than once, at places \[1, 3\].*\{"q1": 1\}'),
+    (table(point=","), {}, r"own.csv, line 2: 10 cells, and no line of as many heads .* decimal"),
+    (table("#"), {}, r'own.csv, line 2: 5 cells, and no line of .*columns=\{"time": 0\}'),
+    (table() + "0.6,1,2\n", {}, r"own.csv, line 62: 3 cells, where 5 are usual; skip_bad=True"),
+    (table() + '0.6,"1,2,3,4\n', {}, r"own.csv, line 62: 2 cells, where 5 are usual"),
+    (table(sep="\t"), {"separator": ","}, r"own.csv: has no line of two numbers; .* separator="),
+    (table() + "0.6,1,1,5 Nm,\n", {}, r"own.csv, line 62, column tau1: must be .* got '5 Nm'; s"),
+    (" \n\n", {}, r"own.csv: is empty"),
+    (HEAD + "\n0,1,1,1,1", {}, r"own.csv: must have three samples or more, got 1"),
+    (b"a\0\0\1\2\3", {}, r"own.csv: is no text file; read_frame takes"),
     (table(time=whole(0, 1)), {},
-     r', column time: steps of 1 may be "s" \(1 s a step\) or "ms" \(0.001 s a step\) or numbers '
-     r'of samples \(then give rate= and no time\); say which by units=\{"time": ...\}'),
+     r'own.csv, line 1, column time: steps of 1 may be "s" \(1 s a step\) or "ms" .* or numbers of '
+     r'samples \(then give rate= and no time\); say which by units=\{"time": ...\}'),
     (table(time=np.float32(EPOCH + TIME)), {},
-     r"column time: numbers near 1.7e\+09 in single precision \(float32\) are 128 apart, where"),
-    (table(q=DEGREES), {}, r"column q1: goes to 28.6462: degrees, or radians .*units=\{.q1.: .deg"),
+     r"own.csv, line 1, column time: numbers near 1.7e\+09 in single precision .* are 128 apart"),
+    (table(q=DEGREES), {}, r"own.csv, line 1, column q1: goes to 28.6462: degrees, or a joint"),
     (table("time,q1 [gon],q2,tau1,tau2"), {}, r"q1 must be one of rad, mrad, deg, rev, .*'gon'"),
-    (table("time,q1,q2,tau1 [mA],tau2"), {}, r'is a current; .*factors=\{"tau1": 0.7\} \(N m/A\)'),
-    (table(), {"columns": {"q1": "q2"}}, r"columns: q2 must have a column of its own"),
-    (table(), {"columns": {"q1": 7}}, r"the place of q1 must be an integer from 0 to 4, got 7"),
-    (table(), {"encoding": "klingon"}, r": encoding klingon does not fit: unknown encoding"),
+    (table("time,q1,q2,tau1 [mA],tau2"), {}, r'is a current; .*factors=\{"tau1": 0.7\}'),
+    (table(), {"encoding": "klingon"}, r"own.csv: encoding klingon does not fit: unknown encoding"),
+    (table(), {"columns": {"tau1": "q1"}}, r"columns: tau1 must have .* by pandas\.merge"),
+    (table(), {"columns": {"q1": 7}}, r"columns: the place of q1 must be an integer from 0 to 4"),
+    (table(), {"columns": ["q1"]}, r"columns must be a mapping, like \{'q1': ...\}, got"),
+    (table(), {"units": {"angle": "deg"}}, r"names in units must be one of 'time', 'q1'"),
+    (table(), {"factors": {"q1": "2"}}, r"factors of q1 must be a single number"),
+    (table(), {"separator": ";;"}, r"separator must be one character, like ';', got ';;'"),
+    (table(), {"skip_bad": "no"}, r"skip_bad must be True or False, got 'no'"),
+    (table(), {"paths": [3]}, r"paths must be of class str or PathLike, got 3"),
+    (table(), {"paths": []}, r"paths must name one file or more, got none"),
+    (table(), {"paths": "x.csv"}, r"x.csv: cannot be read: \[Errno 2\] No such file"),
+    (gzip.compress(table().encode())[:-30], {}, r"own.csv: cannot be read: Compressed file ended"),
 ]  # fmt: skip
 
 
@@ -244,43 +249,21 @@ ERRORS = [
 def test_errors_are_a_line_that_names_the_place(content, options, told, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     stored(tmp_path, content)
-    with pytest.raises(ValueError) as error:
-        read_csv("own.csv", **options)
-    assert re.search(told, str(error.value)), str(error.value)
-    assert str(error.value).startswith(("own.csv", "columns")) and len(str(error.value)) <= 300
-
-
-@pytest.mark.parametrize("options, kind, told", [
-    ({"columns": ["q1"]}, TypeError, "columns must be a mapping, like {'q1': ...}, got"),
-    ({"units": {"angle": "deg"}}, ValueError, "names in units must be one of 'time', 'q1'"),
-    ({"factors": {"q1": "2"}}, TypeError, "factors of q1 must be a single number"),
-    ({"separator": ";;"}, ValueError, "separator must be one character, like ';', got ';;'"),
-    ({"encoding": 5}, TypeError, "encoding must be a text, got 5"),
-    ({"skip_bad": "no"}, TypeError, "skip_bad must be True or False, got 'no'"),
-    ({"paths": [3]}, TypeError, "paths must be of class str or PathLike, got 3"),
-    ({"paths": []}, ValueError, "paths must name one file or more, got none"),
-    ({"paths": "x.csv"}, FileNotFoundError, "x.csv: cannot be read: [Errno 2] No such file"),
-    ({"paths": "cut.gz"}, OSError, "cut.gz: cannot be read: Compressed file ended before"),
-])  # fmt: skip
-def test_errors_of_arguments_say_what_may_stand_there(options, kind, told, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    stored(tmp_path, gzip.compress(table().encode())[:-30], "cut.gz")
-    with pytest.raises(kind) as error:
-        read_log(**{"paths": stored(tmp_path, table()), **options})
-    assert str(error.value).startswith(told)
+    with pytest.raises((ValueError, TypeError, OSError), match=told) as error:
+        read_csv(**{"paths": "own.csv", **options})
+    assert len(str(error.value)) <= 300 and "\n" not in str(error.value)
 
 
 @pytest.mark.parametrize("frame, kind, told", [
     (Q, TypeError, "frame must be a DataFrame or a mapping of arrays, got an array of shape"),
-    ({"time": TIME, "q": Q[1:]}, ValueError, "frame must hold arrays (samples,) or"),
+    ({"time": TIME, "q": Q[1:]}, ValueError, "frame must hold arrays .samples,. or"),
     ({"time": np.float32(EPOCH + TIME), "q": Q, "tau": TAU}, ValueError,
-     "frame, column time: numbers near 1.7e+09 in single precision (float32) are 128 apart"),
+     "frame, column time: numbers near .* in single precision .float32. are 128 apart"),
     ({"time": TIME, "q": Q + 1j, "tau": TAU}, ValueError, "frame, row 0, column q1: must be a fin"),
 ])  # fmt: skip
 def test_errors_of_frames(frame, kind, told):
-    with pytest.raises(kind) as error:
+    with pytest.raises(kind, match=told):
         read_frame(frame)
-    assert str(error.value).startswith(told), str(error.value)
 
 
 ODD = {
