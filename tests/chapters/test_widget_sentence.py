@@ -16,7 +16,7 @@ ENDS = "([spec, all]) => all.map((values) => ENDS[spec.kind](spec, values))"
 
 @pytest.fixture(scope="module")
 def evaluate(browser):
-    with functions(browser, "loops.js", LESSONS / "sentence.js") as call:
+    with functions(browser, LESSONS / "sentence.js") as call:
         yield call
 
 

@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from widget_pages import CALM, NEXT_FRAME, drag, functions, page_of
+from widget_pages import CALM, LESSONS, NEXT_FRAME, drag, functions, page_of
 
 from ddlib.control import PID, Feedforward, closed_loop, plant
 from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM
@@ -15,7 +15,7 @@ from ddlib.effects import Effects, ViscousFriction
 from ddlib.setups import JOINT_DAMPING_KP as KP, JOINT_DAMPING_VISCOUS as VISCOUS
 from ddlib.simulation import CONTROL_STEP, record
 from ddlib.trajectories import APPENDIX_I
-from ddlib.widgets.engine import _loops as loops
+from workshop.chapters.widgets import loops
 from workshop.chapters.widgets.tuner import PIDTuner, tuned
 
 ARM = CMU_DD_ARM_II
@@ -32,7 +32,7 @@ def tuner():
 
 @pytest.fixture(scope="module")
 def engine(browser):
-    with functions(browser, "loops.js") as call:
+    with functions(browser, LESSONS / "loops.js") as call:
         yield call
 
 
