@@ -18,9 +18,10 @@ from ddlib.identification.averaging import (
     bumps_held,
     bumps_over,
     five_point_velocity,
+    kept_bumps,
     mean_sign,
     notes_on_slow_joints,
-    regressor_blur,
+    samples_apart,
     where_sign_is_sure,
     with_runs,
 )
@@ -32,6 +33,7 @@ from ddlib.identification.regression import (
     known_names,
     regressor_columns,
 )
+from ddlib.identification.whitening import independent_equations
 from ddlib.logs.checking import warn_of_log
 from ddlib.simulation import Recording, record
 
@@ -101,34 +103,18 @@ def by_modulation(
         raise ValueError("hold must be given, as the recording has no control_step; got None")
     acting, recording = acting_time(recording, hold), with_runs(recording)
     place = recording.t - begin, width, end - begin
-    bumps, later, after = (
-        bumps_over(*place),
-        bumps_held(*place, *acting),
-        bumps_held(*place, 0.0, recording.step),
-    )
-    steady = where_sign_is_sure(recording, names) @ bumps[0].T / bumps[0].sum(-1) > 0.9
-    torque = np.moveaxis(recording.tau, -1, 0) @ later.T
-    # bumps overlap: the inverse Cholesky factor makes their torque noise independent
-    whiten = [
-        [np.linalg.inv(np.linalg.cholesky(later[k] @ later[k].T)) for k in keeps]
-        for keeps in steady
-    ]
+    bumps, later = bumps_over(*place), bumps_held(*place, *acting)
+    after = bumps_held(*place, 0.0, recording.step)
+    sure = where_sign_is_sure(recording, names)
+    apart = samples_apart(recording)
 
-    def regressor(q) -> tuple[np.ndarray, ...]:
-        rows = _modulated(bumps, after, q, recording.step)
-        whitened = []
-        for row, keeps, factors in zip(rows, steady, whiten):
-            a = regressor_columns(row, names, np.empty((*q.shape[:-2], len(later))))
-            parts = [w @ a[..., k, keep, :] for k, (w, keep) in enumerate(zip(factors, keeps))]
-            whitened.append(np.concatenate(parts, -2))
-        return tuple(whitened)
+    def averaged(q) -> list[np.ndarray]:
+        like = np.empty((*q.shape[:-2], len(later)))
+        rows = _modulated(bumps, after, five_point_velocity(q, recording.step, apart), q)
+        return [regressor_columns(row, names, like) for row in rows]
 
-    torques = tuple(
-        np.concatenate([y[..., k, keep] @ w.T for k, (w, keep) in enumerate(zip(ws, keeps))], -1)
-        for y, keeps, ws in zip(torque, steady, whiten)
-    )
-    blur, notes = regressor_blur(recording, regressor), notes_on_slow_joints(steady, names)
-    return Equations(tuple(names), regressor(recording.q), torques, blur, notes=notes)
+    kept, bent = kept_bumps(sure, bumps[0]), (bumps[2], bumps[2])
+    return independent_equations(recording, names, averaged, sure, kept, bent, later, acting[1])
 
 
 def repeat(
@@ -143,16 +129,17 @@ def repeat(
     """The same motions recorded many times: new sensor noise, the encoder mounted anew.
 
     Arguments are those of `ddlib.simulation.record`. In each repetition the zero of the encoders
-    falls elsewhere within a step. Arrays are ``(repetitions, runs, time, joint)``, the reference
+    falls elsewhere within a step, and is known: a controller would take an unknown one away, with
+    readings rounded alike each time. Arrays are ``(repetitions, runs, time, joint)``, the reference
     ``(runs, time, joint)``.
     """
     integer("repetitions", repetitions, 1)
     extents = finite_array("extents_deg", extents_deg, 2).reshape(-1, 2)
     runs = len(extents)
     steps = [e.step for e in effects.encoder if isinstance(e, Quantisation)]
-    zeros = np.random.default_rng(seed).uniform(0.0, sum(steps), (repetitions, 1, 2))
-    shift = EncoderZero(np.broadcast_to(zeros, (repetitions, runs, 2)).reshape(-1, 2))
-    mounted = replace(effects, encoder=(shift, *effects.encoder))
+    zeros = np.random.default_rng(seed).uniform(0.0, sum(steps), (repetitions * runs, 2))
+    encoder = (EncoderZero(zeros), *effects.encoder, EncoderZero(-zeros))
+    mounted = replace(effects, encoder=encoder)
     options |= {"effects": mounted, "seed": seed}
     many = record(arm, controller, np.tile(extents, (repetitions, 1)), **options)
     many = many.mapped(lambda x: x.reshape(repetitions, runs, -1, 2))
@@ -175,13 +162,12 @@ def _sampled(recording: Recording, velocity, acceleration, names, margin) -> Equ
     return Equations(tuple(names), regressors, torques, biased=BY_SAMPLE, notes=notes)
 
 
-def _modulated(bumps, after, q, step) -> list[dict]:
+def _modulated(bumps, after, velocity, q) -> list[dict]:
     """What each parameter contributes to the modulated torque, for shoulder and elbow.
 
     The means of the bumps from each sample to the next are `after`.
     """
     w, w1, w2 = (x.T for x in bumps)
-    velocity = five_point_velocity(q, step)
     sign = mean_sign(velocity)
     q1, q2, v1, v2 = q[..., 0], q[..., 1], velocity[..., 0], velocity[..., 1]
     c2, s2 = np.cos(q2), np.sin(q2)
