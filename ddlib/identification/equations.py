@@ -124,24 +124,28 @@ def repeat(
     effects: Effects,
     repetitions: int,
     seed: int = 0,
+    spread: float = 0.0,
     **options,
 ) -> Recording:
     """The same motions recorded many times: new sensor noise, the encoder mounted anew.
 
-    Arguments are those of `ddlib.simulation.record`. In each repetition the zero of the encoders
-    falls elsewhere within a step, and is known: a controller would take an unknown one away, with
-    readings rounded alike each time. Arrays are ``(repetitions, runs, time, joint)``, the reference
-    ``(runs, time, joint)``.
+    Arguments are those of `ddlib.simulation.record`. In each run the zero of the encoders falls
+    elsewhere within a step, and is known: a controller would take an unknown one away, with
+    readings rounded alike each time. A motion that is quite the same is rounded in a pattern of its
+    own, which is no noise, so extents may differ: each is smaller by up to the share `spread`.
+    Arrays are ``(repetitions, runs, time, joint)``; the reference is that of the first repetition.
     """
     integer("repetitions", repetitions, 1)
+    number("spread", spread, 0.0, 1.0)
     extents = finite_array("extents_deg", extents_deg, 2).reshape(-1, 2)
-    runs = len(extents)
+    runs, rng = len(extents), np.random.default_rng(seed)
     steps = [e.step for e in effects.encoder if isinstance(e, Quantisation)]
-    zeros = np.random.default_rng(seed).uniform(0.0, sum(steps), (repetitions * runs, 2))
+    zeros = rng.uniform(0.0, sum(steps), (repetitions * runs, 2))
     encoder = (EncoderZero(zeros), *effects.encoder, EncoderZero(-zeros))
-    mounted = replace(effects, encoder=encoder)
-    options |= {"effects": mounted, "seed": seed}
-    many = record(arm, controller, np.tile(extents, (repetitions, 1)), **options)
+    options |= {"effects": replace(effects, encoder=encoder), "seed": seed}
+    extents = np.tile(extents, (repetitions, 1))
+    extents = extents * (1 - rng.uniform(0.0, spread, extents.shape))
+    many = record(arm, controller, extents, **options)
     many = many.mapped(lambda x: x.reshape(repetitions, runs, -1, 2))
     return replace(many, reference=type(many.reference)(*(x[0] for x in many.reference)))
 
