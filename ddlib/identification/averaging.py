@@ -13,6 +13,8 @@ from ddlib.identification.regression import SIGN_SPEED, SLOW
 from ddlib.simulation import Recording
 
 BY_SAMPLE = "Equations of single samples give no intervals: what smoothing takes away biases them."
+_SURE = 0.95  # of a bump
+_APART = 0.03  # s, between samples of which a velocity is made
 _SHAKES = 8  # how often noise is added to readings, to see what it does to a regressor
 
 
@@ -52,10 +54,18 @@ def bumps_held(t, width, length, begin, hold) -> np.ndarray:
 def where_sign_is_sure(recording: Recording, names) -> np.ndarray:
     """Where friction has a sure sign, by the speed over all repetitions: (joint, run, time)."""
     q = recording.q
-    speed = np.abs(five_point_velocity(q, recording.step))
+    speed = np.abs(five_point_velocity(q, recording.step, samples_apart(recording)))
     speed = np.moveaxis(speed.reshape(-1, *q.shape[-3:]).mean(0), -1, 0)
     least_speed = np.array([SLOW if f"F_c{j + 1}" in names else 0.0 for j in range(2)])
     return speed >= least_speed[:, None, None]
+
+
+def kept_bumps(steady, bumps) -> np.ndarray:
+    """Bumps (bump, time) in which friction's sign is sure (joint, run, time) nearly throughout.
+
+    Where a joint turns back it may stick for a while, which no equation knows.
+    """
+    return steady @ bumps.T / bumps.sum(-1) > _SURE
 
 
 def notes_on_slow_joints(used, names) -> tuple[str, ...]:
@@ -87,12 +97,28 @@ def mean_sign(velocity) -> np.ndarray:
     return np.concatenate([mean, blurred_sign[..., -1:, :]], -2)
 
 
-def five_point_velocity(q, step) -> np.ndarray:
-    """Velocity by central differences of fourth order (plain ones at the ends)."""
+def five_point_velocity(q, step, apart=1) -> np.ndarray:
+    """Velocity by central differences of fourth order of samples `apart` (plain ones at ends)."""
     velocity = np.gradient(q, step, axis=-2)
-    near, far = q[..., 3:-1, :] - q[..., 1:-3, :], q[..., 4:, :] - q[..., :-4, :]
-    velocity[..., 2:-2, :] = (8 * near - far) / (12 * step)
+    samples = q.shape[-2]
+    for n in range(1, apart + 1):  # near the ends the differences are as wide as fits
+        if samples <= 4 * n:
+            break
+        at = [q[..., 2 * n + k * n : samples - 2 * n + k * n, :] for k in (-2, -1, 1, 2)]
+        inner = (8 * (at[2] - at[1]) - (at[3] - at[0])) / (12 * n * step)
+        velocity[..., 2 * n : samples - 2 * n, :] = inner
     return velocity
+
+
+def samples_apart(recording: Recording) -> int:
+    """How far apart samples are that a velocity is made of: its noise must not hide a slow joint.
+
+    One, or if the readings are coarse more, up to 30 ms.
+    """
+    q = recording.q.reshape(-1, *recording.q.shape[-3:])[0]
+    noise = reading_noise(q[..., recording.motion, :]).max() / recording.step
+    most = max(1, round(_APART / recording.step))
+    return int(np.clip(np.ceil(noise / (SLOW / 3)), 1, most))
 
 
 def regressor_blur(recording: Recording, regressor) -> tuple[np.ndarray, ...]:

@@ -14,7 +14,17 @@ from scipy.interpolate import interp1d
 from scipy.signal import savgol_filter
 
 from ddlib._check import instance
-from ddlib.identification.equations import averaged
+from ddlib.identification.averaging import (
+    acting_time,
+    bumps_held,
+    bumps_over,
+    five_point_velocity,
+    kept_bumps,
+    regressor_blur,
+    samples_apart,
+    where_sign_is_sure,
+)
+from ddlib.identification.equations import modulated
 from ddlib.identification.regression import (
     FRICTION,
     GRAVITY,
@@ -24,6 +34,7 @@ from ddlib.identification.regression import (
     Estimate,
     known_names,
     least_squares,
+    regressor_columns,
 )
 from ddlib.logs.findings import JOINTS, SEVERITIES, Check, Finding
 from ddlib.logs.readings import at_rest, readings, spikes, steady
@@ -175,6 +186,38 @@ def _pieces(recording, width) -> Recording:
     return _with(recording, recording.t[:length], q, tau)
 
 
+def _averaged(pieces, names, width, blurred=False) -> Equations:
+    """Equations under bumps of so many samples.
+
+    Their torques' noise is independent. How, depends on the motion alone, not on the torques: one
+    torque can be held against another's equations.
+    """
+    begin, end = pieces.span
+    place = pieces.t - begin, width * pieces.step, end - begin
+    bumps, later = bumps_over(*place), bumps_held(*place, *acting_time(pieces, None))
+    after = bumps_held(*place, 0.0, pieces.step)
+    kept = kept_bumps(where_sign_is_sure(pieces, names), bumps[0])
+    apart = samples_apart(pieces)
+    whiten = [
+        [np.linalg.inv(np.linalg.cholesky(later[k] @ later[k].T)) for k in runs] for runs in kept
+    ]
+
+    def white(series) -> tuple[np.ndarray, ...]:
+        return tuple(
+            np.concatenate([w @ x[run, k] for run, (w, k) in enumerate(zip(*parts))])
+            for x, *parts in zip(series, whiten, kept)
+        )
+
+    def regressor(q) -> tuple[np.ndarray, ...]:
+        rows = modulated(bumps, after, five_point_velocity(q, pieces.step, apart), q)
+        like = np.empty((len(q), len(later)))
+        return white([regressor_columns(row, names, like) for row in rows])
+
+    torques = white(np.moveaxis(pieces.tau, -1, 0) @ later.T)
+    blur = regressor_blur(pieces, regressor) if blurred else None
+    return Equations(tuple(names), regressor(pieces.q), torques, blur)
+
+
 @dataclass(frozen=True)
 class _Fit:
     """Equations and what they tell; `share` is what they leave of the torques."""
@@ -213,7 +256,7 @@ def _fit(pieces, width, names=EVERY, blurred=False) -> _Fit | None:
     A joint that is slow throughout has no friction of a sure sign.
     """
     for chosen in (names, [name for name in names if name[:-1] != "F_c"]):
-        equations = averaged(pieces, chosen, width * pieces.step, pieces.control_step, blurred)
+        equations = _averaged(pieces, chosen, width, blurred)
         if min(y.shape[-1] for y in equations.torque) > len(names):
             try:
                 return _Fit(equations, least_squares(equations))
@@ -304,7 +347,7 @@ def _torque_spikes(recording, pieces, width, fit) -> Iterator[Finding]:
             for model in filter(None, (fit, anywhere)):
                 names, values = model.equations.names, np.nan_to_num(model.estimate.values)
                 left = model.equations.torque[joint] - model.equations.regressor[joint] @ values
-                spike = averaged(one, names, width * one.step, one.control_step, False)
+                spike = _averaged(one, names, width)
                 spike = spike.torque[joint]
                 seen = np.linalg.norm(spike) > 3 * model.estimate.noise[joint]
                 if seen and 0.5 < (spike @ left) / (spike @ spike) < 2:

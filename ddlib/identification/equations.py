@@ -18,9 +18,10 @@ from ddlib.identification.averaging import (
     bumps_held,
     bumps_over,
     five_point_velocity,
+    kept_bumps,
     mean_sign,
     notes_on_slow_joints,
-    regressor_blur,
+    samples_apart,
     where_sign_is_sure,
     with_runs,
 )
@@ -32,6 +33,7 @@ from ddlib.identification.regression import (
     known_names,
     regressor_columns,
 )
+from ddlib.identification.whitening import independent_equations
 from ddlib.logs import warn_of
 from ddlib.simulation import Recording, record
 
@@ -96,50 +98,23 @@ def by_modulation(
             f"width must lie in [{shortest:g}, {end - begin:g}], got {width:g} s: a bump has "
             "12 samples or more, and is no longer than the motion"
         )
+    width = int((width + tiny) / (6 * recording.step)) * 6 * recording.step
     if hold is None and recording.control_step is None:
         raise ValueError("hold must be given, as the recording has no control_step; got None")
-    return averaged(recording, names, width, hold)
-
-
-def averaged(recording: Recording, names: Sequence[str], width, hold, blurred=True) -> Equations:
-    """`by_modulation` of arguments that were checked; names may be any of `_modulated`.
-
-    What noise in the motion makes in the regressor is left out unless `blurred`.
-    """
-    begin, end = recording.span
-    width = int((1 + 1e-6) * width / (6 * recording.step)) * 6 * recording.step
     acting, recording = acting_time(recording, hold), with_runs(recording)
     place = recording.t - begin, width, end - begin
-    bumps, later, after = (
-        bumps_over(*place),
-        bumps_held(*place, *acting),
-        bumps_held(*place, 0.0, recording.step),
-    )
-    steady = where_sign_is_sure(recording, names) @ bumps[0].T / bumps[0].sum(-1) > 0.9
-    torque = np.moveaxis(recording.tau, -1, 0) @ later.T
-    # bumps overlap: the inverse Cholesky factor makes their torque noise independent
-    whiten = [
-        [np.linalg.inv(np.linalg.cholesky(later[k] @ later[k].T)) for k in keeps]
-        for keeps in steady
-    ]
+    bumps, later = bumps_over(*place), bumps_held(*place, *acting)
+    after = bumps_held(*place, 0.0, recording.step)
+    sure = where_sign_is_sure(recording, names)
+    apart = samples_apart(recording)
 
-    def regressor(q) -> tuple[np.ndarray, ...]:
-        rows = _modulated(bumps, after, q, recording.step)
-        whitened = []
-        for row, keeps, factors in zip(rows, steady, whiten):
-            a = regressor_columns(row, names, np.empty((*q.shape[:-2], len(later))))
-            parts = [w @ a[..., k, keep, :] for k, (w, keep) in enumerate(zip(factors, keeps))]
-            whitened.append(np.concatenate(parts, -2))
-        return tuple(whitened)
+    def averaged(q) -> list[np.ndarray]:
+        like = np.empty((*q.shape[:-2], len(later)))
+        rows = modulated(bumps, after, five_point_velocity(q, recording.step, apart), q)
+        return [regressor_columns(row, names, like) for row in rows]
 
-    torques = tuple(
-        np.concatenate([y[..., k, keep] @ w.T for k, (w, keep) in enumerate(zip(ws, keeps))], -1)
-        for y, keeps, ws in zip(torque, steady, whiten)
-    )
-    blur, notes = None, notes_on_slow_joints(steady, names)
-    if blurred:
-        blur = regressor_blur(recording, regressor)
-    return Equations(tuple(names), regressor(recording.q), torques, blur, notes=notes)
+    kept, bent = kept_bumps(sure, bumps[0]), (bumps[2], bumps[2])
+    return independent_equations(recording, names, averaged, sure, kept, bent, later, acting[1])
 
 
 def repeat(
@@ -149,23 +124,28 @@ def repeat(
     effects: Effects,
     repetitions: int,
     seed: int = 0,
+    spread: float = 0.0,
     **options,
 ) -> Recording:
     """The same motions recorded many times: new sensor noise, the encoder mounted anew.
 
-    Arguments are those of `ddlib.simulation.record`. In each repetition the zero of the encoders
-    falls elsewhere within a step. Arrays are ``(repetitions, runs, time, joint)``, the reference
-    ``(runs, time, joint)``.
+    Arguments are those of `ddlib.simulation.record`. In each run the zero of the encoders falls
+    elsewhere within a step, and is known: a controller would take an unknown one away, with
+    readings rounded alike each time. A motion that is quite the same is rounded in a pattern of its
+    own, which is no noise, so extents may differ: each is smaller by up to the share `spread`.
+    Arrays are ``(repetitions, runs, time, joint)``; the reference is that of the first repetition.
     """
     integer("repetitions", repetitions, 1)
+    number("spread", spread, 0.0, 1.0)
     extents = finite_array("extents_deg", extents_deg, 2).reshape(-1, 2)
-    runs = len(extents)
+    runs, rng = len(extents), np.random.default_rng(seed)
     steps = [e.step for e in effects.encoder if isinstance(e, Quantisation)]
-    zeros = np.random.default_rng(seed).uniform(0.0, sum(steps), (repetitions, 1, 2))
-    shift = EncoderZero(np.broadcast_to(zeros, (repetitions, runs, 2)).reshape(-1, 2))
-    mounted = replace(effects, encoder=(shift, *effects.encoder))
-    options |= {"effects": mounted, "seed": seed}
-    many = record(arm, controller, np.tile(extents, (repetitions, 1)), **options)
+    zeros = rng.uniform(0.0, sum(steps), (repetitions * runs, 2))
+    encoder = (EncoderZero(zeros), *effects.encoder, EncoderZero(-zeros))
+    options |= {"effects": replace(effects, encoder=encoder), "seed": seed}
+    extents = np.tile(extents, (repetitions, 1))
+    extents = extents * (1 - rng.uniform(0.0, spread, extents.shape))
+    many = record(arm, controller, extents, **options)
     many = many.mapped(lambda x: x.reshape(repetitions, runs, -1, 2))
     return replace(many, reference=type(many.reference)(*(x[0] for x in many.reference)))
 
@@ -186,7 +166,7 @@ def _sampled(recording: Recording, velocity, acceleration, names, margin) -> Equ
     return Equations(tuple(names), regressors, torques, biased=BY_SAMPLE, notes=notes)
 
 
-def _modulated(bumps, after, q, step) -> list[dict]:
+def modulated(bumps, after, velocity, q) -> list[dict]:
     """What each parameter contributes to the modulated torque, for shoulder and elbow.
 
     The means of the bumps from each sample to the next are `after`. If the elbow's zero is off by
@@ -194,7 +174,6 @@ def _modulated(bumps, after, q, step) -> list[dict]:
     and `g2`, `g2_cos` for angles that are not counted from the vertical.
     """
     w, w1, w2 = (x.T for x in bumps)
-    velocity = five_point_velocity(q, step)
     sign = mean_sign(velocity)
     q1, q2, v1, v2 = q[..., 0], q[..., 1], velocity[..., 0], velocity[..., 1]
     c2, s2 = np.cos(q2), np.sin(q2)

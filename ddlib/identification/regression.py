@@ -78,7 +78,7 @@ class Estimate:
     values: np.ndarray  #: Estimates, (..., parameters).
     errors: np.ndarray  #: Their standard errors, of what scatters: a bias is not in them.
     noise: np.ndarray  #: Standard deviation of an equation's torque, (..., joint), N m.
-    freedom: int  #: Degrees of freedom: equations minus parameters.
+    freedom: int  #: Equations less what the parameters spend, of the joint that has fewest left.
     told: np.ndarray | None = None  #: Which parameters can be told, (parameters,); none: all.
     combinations: tuple[Combination, ...] = ()  #: What is told of those that cannot.
     covariance: np.ndarray | None = None  #: Of the estimates, (..., parameters, parameters).
@@ -179,9 +179,12 @@ def _solved(names, regressors, torques, rounds) -> Estimate:
         inverse = np.linalg.inv(triangle)
         projected = np.einsum("...np,...n->...p", basis, y / sigma)
         residual = y - np.einsum("...np,...p->...n", basis, projected) * sigma
-        noise = np.stack([_spread(residual[..., j], basis[..., j, :]) for j in joints], -1)
+        free = np.stack([_free(basis[..., j, :]) for j in joints], -1)
+        squares = np.stack([np.sum(residual[..., j] ** 2, -1) for j in joints], -1)
+        noise = np.sqrt(squares / np.maximum(free, 1e-9))
     values = np.einsum("...pq,...q->...p", inverse, projected)
-    freedom = sum(counts) - len(names)
+    # each joint's noise is known from its own equations
+    freedom = max(1, int(np.min(free[..., np.array(counts) > 0])))
     errors = np.linalg.norm(inverse, axis=-1)
     covariance = inverse @ np.swapaxes(inverse, -1, -2)
     return Estimate(names, values, errors, noise, freedom, covariance=covariance)
@@ -375,20 +378,22 @@ def _impossible(estimate) -> list[str]:
 
 
 def _alike(equations, regressors, estimate) -> list[str]:
-    """A word on each joint whose averaged equations leave more than noise: neighbours are alike."""
+    """A word on joints whose averaged equations leave more than noise: neighbours are alike."""
     if estimate.values.ndim > 1 or equations.blur is None:
         return []
-    notes = []
-    for j, (a, y) in enumerate(zip(regressors, equations.torque)):
+    shares, deviations = [], []
+    for a, y in zip(regressors, equations.torque):
         residual = y - a @ estimate.values
-        share = residual[1:] @ residual[:-1] / (residual @ residual) if residual.any() else 0.0
-        if share * np.sqrt(residual.size) > _ALIKE:
-            notes.append(
-                f"What is left of joint {j + 1}'s torque is no noise, as neighbours are alike "
-                f"(correlation {share:.2f}): an effect has no term, or the torque is logged early "
-                "or late. The intervals are too narrow."
-            )
-    return notes
+        shares.append(residual[1:] @ residual[:-1] / max(residual @ residual, 1e-300))
+        deviations.append(shares[-1] * np.sqrt(residual.size))
+    most = max(*deviations, sum(deviations) / np.sqrt(len(deviations)))
+    return [
+        f"What is left of joint {j + 1}'s torque is no noise, as neighbours are alike "
+        f"(correlation {share:.2f}): an effect has no term, or the torque is logged early "
+        "or late. The intervals are too narrow."
+        for j, (share, deviation) in enumerate(zip(shares, deviations))
+        if most > _ALIKE and deviation > _ALIKE / 2
+    ]
 
 
 def from_states(q, qd, qdd, torque, names: Sequence[str] = RIGID) -> Equations:
@@ -412,7 +417,7 @@ def from_states(q, qd, qdd, torque, names: Sequence[str] = RIGID) -> Equations:
 
 
 def true_parameters(arm: Arm, effects: Effects, names: Sequence[str]) -> np.ndarray:
-    """What an identification should find; of the effects viscous and Coulomb friction are known."""
+    """What an identification should find; of the effects viscous and Coulomb friction are known, offsets are 0."""
     instance("arm", arm, Arm)
     instance("effects", effects, Effects)
     known_names(names)
@@ -421,7 +426,9 @@ def true_parameters(arm: Arm, effects: Effects, names: Sequence[str]) -> np.ndar
     )
     coulomb = sum(np.asarray(f.level) for f in effects.friction if isinstance(f, CoulombFriction))
     pairs = (*arm.gravity_moments, *np.broadcast_to(viscous, 2), *np.broadcast_to(coulomb, 2))
-    known = dict(zip((*RIGID, *GRAVITY, *FRICTION, *OFFSETS), (arm.a, arm.b, arm.d, *pairs)))
+    known = dict(
+        zip((*RIGID, *GRAVITY, *FRICTION, *OFFSETS), (arm.a, arm.b, arm.d, *pairs, 0.0, 0.0))
+    )
     return np.array([known[name] for name in names])
 
 
@@ -452,10 +459,9 @@ def excitation(trajectory: Trajectory, names: Sequence[str] = RIGID, noise: floa
     return float(values[0] / values[-1])
 
 
-def _spread(residual, basis) -> np.ndarray:
-    """Standard deviation of one joint's residuals; what its equations spent is not counted."""
-    free = residual.shape[-1] - np.sum(basis**2, (-2, -1))
-    return np.sqrt(np.sum(residual**2, -1) / np.maximum(free, 1e-9))
+def _free(basis) -> np.ndarray:
+    """Equations of one joint less what the fit spends of them."""
+    return basis.shape[-2] - np.sum(basis**2, (-2, -1))
 
 
 def known_names(names, called: str = "names") -> None:

@@ -18,14 +18,15 @@ from ddlib.identification.averaging import (
     bumps_held,
     bumps_over,
     encoder_step,
+    kept_bumps,
     mean_sign,
     notes_on_slow_joints,
     reading_noise,
-    regressor_blur,
     where_sign_is_sure,
     with_runs,
 )
 from ddlib.identification.regression import FRICTION, RIGID, Equations, from_states, known_names
+from ddlib.identification.whitening import independent_equations
 from ddlib.logs import warn_of
 from ddlib.simulation import Recording
 
@@ -203,19 +204,18 @@ def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
     orders = again(recording.q)
     warn_of(recording)
     acting = acting_time(recording, hold)
-    rows, single = with_runs(recording if rows is None else rows), recording.reference.q.ndim == 2
-    steady = where_sign_is_sure(rows, names)
+    steady = where_sign_is_sure(with_runs(recording if rows is None else rows), names)
     if steady.shape[-1] != recording.t.size:
         raise ValueError(f"rows must have {recording.t.size} samples, got {steady.shape[-1]}")
-    states = _later(orders, acting[0] + acting[1] / 2 if width is None else 0.0)
-    states = states[..., None, :, :, :] if single else states
     (begin, end), step, motion = recording.span, recording.step, recording.motion
     inside = np.zeros(recording.t.size, bool)
     inside[max(motion.start, margin) : min(motion.stop, len(inside) - margin)] = True
-    tau = with_runs(recording).tau
-    equations = from_states(*np.moveaxis(states, -1, 0), tau, names)
     if width is None:
         _some(keep := steady & inside, margin * step)
+        states = np.moveaxis(_later(orders, acting[0] + acting[1] / 2), -1, 0)
+        if recording.reference.q.ndim == 2:
+            states = states[..., None, :, :]
+        equations = from_states(*states, with_runs(recording).tau, names)
         regressors = tuple(a[..., k, :] for a, k in zip(equations.regressor, keep))
         torques = tuple(y[..., k] for y, k in zip(equations.torque, keep))
         notes = notes_on_slow_joints(keep, names)
@@ -225,42 +225,23 @@ def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
     number("width", width, 12 * step * (1 - 1e-6), (end - begin) * (1 + 1e-6))
     width = int(width / (6 * step) + 1e-6) * 6 * step
     place = recording.t - begin, width, end - begin
-    bumps, later, after = (
-        bumps_over(*place, (0,))[0],
-        bumps_held(*place, *acting),
-        bumps_held(*place, 0.0, step),
-    )
-    keeps = (steady @ bumps.T / bumps.sum(-1) > 0.9) & ((bumps @ ~inside) / bumps.sum(-1) < 0.02)
-    _some(keeps, margin * step)
-    # bumps overlap: the inverse Cholesky factor makes their torque noise independent
-    whiten = [
-        [np.linalg.inv(np.linalg.cholesky(later[k] @ later[k].T)) for k in runs] for runs in keeps
-    ]
+    bumps, bent = bumps_over(*place, (0, 2))
+    later, after = bumps_held(*place, *acting), bumps_held(*place, 0.0, step)
+    kept = kept_bumps(steady, bumps) & ((bumps @ ~inside) / bumps.sum(-1) < 0.02)
+    _some(kept, margin * step)
 
-    def averaged(states) -> tuple[np.ndarray, ...]:
+    def averaged(q) -> list[np.ndarray]:
+        states = _later(again(q))
         rows = from_states(*np.moveaxis(states, -1, 0), np.zeros(2), names)[1]
-        sign, whitened = mean_sign(states[..., 1]), []
-        for j, (a, ws, runs) in enumerate(zip(rows, whiten, keeps)):
-            mean = bumps @ a
+        means, sign = [bumps @ a for a in rows], mean_sign(states[..., 1])
+        for j, mean in enumerate(means):
             if f"F_c{j + 1}" in names:
                 mean[..., names.index(f"F_c{j + 1}")] = sign[..., j] @ after.T
-            parts = [w @ mean[..., k, keep, :] for k, (w, keep) in enumerate(zip(ws, runs))]
-            whitened.append(np.concatenate(parts, -2))
-        return tuple(whitened)
+        return means
 
-    def regressor(q) -> tuple[np.ndarray, ...]:
-        return averaged(_later(again(q)))
-
-    torques = tuple(
-        np.concatenate(
-            [(y[..., k, :] @ later[keep].T) @ w.T for k, (w, keep) in enumerate(zip(ws, runs))],
-            -1,
-        )
-        for y, ws, runs in zip(equations.torque, whiten, keeps)
-    )
-    blur = regressor_blur(with_runs(recording), regressor)
-    return Equations(
-        tuple(names), averaged(states), torques, blur, notes=notes_on_slow_joints(keeps, names)
+    bent = np.moveaxis(again(np.stack([bent, bent], -1))[0], -1, 0)  # the motion is smoothed, too
+    return independent_equations(
+        with_runs(recording), names, averaged, steady, kept, bent, later, acting[1]
     )
 
 

@@ -93,7 +93,7 @@ def test_intervals_hold_the_truth_where_noise_is_shared_by_neighbours():
 
 @pytest.mark.parametrize("bits", [16, 12])
 def test_a_first_estimates_simulation_is_an_instrument_for_the_arm(bits):
-    """Inertias from a coarse encoder at a bandwidth where least squares loses a tenth of them."""
+    """Inertias from a coarse encoder, at a bandwidth that lets much of its noise through."""
     names = RIGID + FRICTION
     effects = replace(CMU_DD_ARM_II_EFFECTS, encoder=(Quantisation.encoder(bits),))
     many = repeat(CMU_DD_ARM_II, LOOP, APPENDIX_I[:5], effects, 60, seed=3)
@@ -108,8 +108,5 @@ def test_a_first_estimates_simulation_is_an_instrument_for_the_arm(bits):
     found = instrumental_variables(equations, by_butterworth(guess, names=names, **how))
     off = np.abs(found.values.mean(0) / truth - 1)[:3]
     assert off.max() < 0.04
-    if bits == 12:
-        plain = least_squares(equations)
-        assert not plain.told[names.index("b")], "noise makes most of its column"
     share = found.covers(truth).mean(0)
     assert share.min() > 0.8 and share.mean() > 0.9

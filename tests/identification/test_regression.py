@@ -43,7 +43,7 @@ def test_exact_states_give_exact_parameters(arm):
     motion = states()
     found = least_squares(from_states(*motion, torque(arm, motion), ALL))
     np.testing.assert_allclose(found.values, true_parameters(arm, FRICTIONS, ALL), atol=1e-10)
-    assert found.names == ALL and found.freedom == 400 - 9
+    assert found.names == ALL and 200 - 9 <= found.freedom < 200, "of one joint"
     assert found.errors.max() < 1e-10 and found.noise.max() < 1e-10
 
 
@@ -129,17 +129,22 @@ def test_intervals_of_sums_hold_and_friction_is_told(encoder):
     assert np.mean(held, 0).min() > 0.85
 
 
-@pytest.mark.parametrize(("encoder", "given"), [(1e-4, 1.0), (0.01, 0.0)])
-def test_sums_that_noise_in_the_motion_biases_have_no_interval(encoder, given):
-    """At .01 rad a + 2 b comes out near 1.2; half of those intervals would not hold 1.4."""
-    found = [least_squares(by_modulation(locked(encoder, seed=k), RIGID)) for k in range(20)]
+@pytest.mark.parametrize(("encoder", "least", "most"), [(1e-4, 1, 1), (0.01, 1, 1), (0.03, 0, 0.3)])
+def test_sums_that_noise_in_the_motion_biases_have_no_interval(encoder, least, most):
+    """At .03 rad a + 2 b comes out near 1.25; a fifth of the intervals would not hold 1.4."""
+    found = [least_squares(by_modulation(locked(encoder, seed=k), RIGID)) for k in range(40)]
+    found = [one for one in found if one.combinations]
     sums = [one.combinations[0] for one in found]
-    assert np.mean([np.isfinite(one.half_width) for one in sums]) == given
-    assert all(("±" in str(one)) == bool(given) for one in sums)
-    if given:  # 95 % as for single parameters, not one standard error
-        ratio = sums[0].half_width / sums[0].error
-        assert ratio == pytest.approx(student.ppf(0.975, found[0].freedom))
-    else:
+    given = np.array([np.isfinite(one.half_width) for one in sums])
+    assert least <= given.mean() <= most
+    assert all(("±" in str(one)) == has for one, has in zip(sums, given))
+    held = np.array([abs(one.value - 1.4) <= one.half_width for one in sums])
+    assert held[given].mean() > 0.9
+    # 95 % as for single parameters, not one standard error
+    k = int(given.argmax())
+    ratio = sums[k].half_width / sums[k].error
+    assert ratio == pytest.approx(student.ppf(0.975, found[k].freedom))
+    if not least:
         assert np.mean([abs(one.value - 1.4) < 2 * one.error for one in sums]) < 0.9
 
 
