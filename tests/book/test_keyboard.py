@@ -94,29 +94,3 @@ def test_feedback(lesson):
     keys.go("Proportional gain")
     keys.moves("End")
     keys.question_and_solution()
-
-
-def test_window_networks(lesson):
-    keys = lesson("window-networks")
-    keys.go("Middle of the window")
-    keys.moves("ArrowRight", "ArrowRight")
-    keys.go("Direct weights measure acceleration")
-    keys.press("Enter")
-    assert keys.at()
-    keys.go("Error, RMSS over epoch")  # a chart: arrow keys read its values
-    keys.press("ArrowRight")
-    assert keys.read("[data-widget=trainer] .spoken").startswith("epoch")
-    keys.question_and_solution()
-
-
-def test_whose_filters(lesson):
-    keys = lesson("whose-filters")
-    keys.go("A learnt this arm")
-    keys.press("Enter")
-    assert keys.at() == "Next round" and keys.read(".verdict")
-    keys.press("Enter")
-    keys.go("B learnt this arm")
-    keys.press("Enter")
-    keys.go("Start, up to")
-    assert keys.moves("Home") == "±0.01"
-    keys.question_and_solution()
