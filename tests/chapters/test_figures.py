@@ -347,6 +347,11 @@ def test_table_4_1_has_every_network_medians_and_printed_values():
         assert dashed == list(printed.values())
 
 
+def test_panels_are_headed_by_their_cases():
+    axes = made("by_case")[1].axes
+    assert [axis.get_title(loc="left") for axis in axes] == list(CASES)
+
+
 def test_maps_have_a_cell_for_every_value():
     """Stopped runs are masked; of several maps there is one scale of colours."""
 

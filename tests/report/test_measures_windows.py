@@ -108,8 +108,10 @@ def test_directions_by_hand(planted_results):
     """A cell for each window with inputs of 0 to 1, then for each with -1 to 1."""
     errors = [4.0, 8.0, 16.0, 2.0, 2.0, 2.0]
     some = [{"rmss": [e], "halves": [[10.0, 40.0, 80.0]], "learnt": [2]} for e in errors]
-    kept = {"start kept": [0.7, 0.8, 0.95], "variance": [1.0] * 3}
-    planted_results(span={"cells": [{"measured": x, "predicted": x, **kept} for x in some]})
+    kept = [{"start kept": [0.7, k / 10, 0.95], "variance": [1.0] * 3} for k in (9, 9, 8, 7, 7, 7)]
+    planted_results(
+        span={"cells": [{"measured": x, "predicted": x, **y} for x, y in zip(some, kept)]}
+    )
     assert windows.centred().value == 2.0  # the least of three ratios
     assert windows.halved([1, 2], [3]).value == pytest.approx(4.0)  # 80 over the mean of 10 and 40
     assert windows.noise_left(41).value == 0.8

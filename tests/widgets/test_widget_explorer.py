@@ -163,7 +163,8 @@ def test_pointer_keys_menus_and_names_choose(page_with, explorer, models):
     page.get_by_label("Window size").select_option(label="41 samples")
     page.get_by_label("Network").select_option(label="seed 6")
     page.get_by_label("Unit", exact=True).select_option(label="hidden 10")
-    shows(width=41, seed=6, unit="hidden 9")
+    page.get_by_label("Window of").select_option(label="shoulder")
+    shows(width=41, seed=6, unit="hidden 9", joint="shoulder")
     for name, named in explorer.spec["presets"]["options"]:
         page.get_by_role("button", name=name, exact=True).click()
         shows(**named)
