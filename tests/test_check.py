@@ -2,11 +2,10 @@
 
 import re
 
-import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from ddlib._check import integer, non_negative, number, one_of, positive, shaped
+from ddlib._check import integer, non_negative, number, one_of, positive
 
 
 @settings(deadline=None, max_examples=60)
@@ -39,18 +38,3 @@ def test_messages_name_argument_range_and_value():
     assert positive("x", [1, 2]).tolist() == [1.0, 2.0]
     assert non_negative("kp", [0, 1.5], 2).tolist() == [0.0, 1.5]
     assert one_of("mode", "a", "ab") == "a"
-
-
-def test_shapes():
-    for shape, fits, misses in (
-        ((2, 3), [(2, 3)], [(3, 2), (2,), (2, 3, 1), (12, 3), ()]),
-        ((), [()], [(1,)]),
-        ("(time,)", [(1,), (40,), (0,)], [(), (1, 1)]),
-        ("(..., time, 2)", [(5, 2), (3, 5, 2), (12, 3, 5, 2)], [(2,), (2, 5), (5, 12)]),
-    ):
-        for size in fits:
-            assert shaped("x", np.zeros(size), shape).shape == size
-        for size in misses:
-            told = re.escape(f"x must have shape {shape}, got {size}")
-            with pytest.raises(ValueError, match=told):
-                shaped("x", np.zeros(size), shape)
