@@ -417,7 +417,10 @@ def from_states(q, qd, qdd, torque, names: Sequence[str] = RIGID) -> Equations:
 
 
 def true_parameters(arm: Arm, effects: Effects, names: Sequence[str]) -> np.ndarray:
-    """What an identification should find; of the effects viscous and Coulomb friction are known, offsets are 0."""
+    """What an identification should find; of the effects viscous and Coulomb friction are known.
+
+    Offsets are 0.
+    """
     instance("arm", arm, Arm)
     instance("effects", effects, Effects)
     known_names(names)
