@@ -41,6 +41,13 @@ def test_messages_name_argument_range_and_value():
     assert one_of("mode", "a", "ab") == "a"
 
 
+def test_masked_entries_are_refused_and_masks_without_any_are_not():
+    spiky = np.ma.masked_greater([1.0, 2.0, 9.0, 8.0], 5.0)
+    with pytest.raises(ValueError, match="x must have no masked entries, got 2"):
+        shaped("x", spiky, (4,))
+    assert shaped("x", spiky[:2], (2,)).tolist() == [1.0, 2.0]
+
+
 def test_shapes():
     for shape, fits, misses in (
         ((2, 3), [(2, 3)], [(3, 2), (2,), (2, 3, 1), (12, 3), ()]),

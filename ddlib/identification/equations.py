@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -27,6 +28,7 @@ from ddlib.identification.averaging import (
 )
 from ddlib.identification.regression import (
     FRICTION,
+    GRAVITY,
     RIGID,
     Equations,
     from_states,
@@ -34,7 +36,9 @@ from ddlib.identification.regression import (
     regressor_columns,
 )
 from ddlib.identification.whitening import independent_equations
-from ddlib.logs.checking import warn_of_log
+from ddlib.logs.checking import DoubtfulRecording, warn_of_log
+from ddlib.logs.findings import JOINTS
+from ddlib.logs.log import LoggedRecording
 from ddlib.simulation import Recording, record
 
 
@@ -78,13 +82,19 @@ def by_modulation(
     Parameters
     ----------
     names : sequence of str
-        Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
+        Parameters, from `RIGID`, `GRAVITY`, `FRICTION` and `OFFSETS`.
     width : float
         Width of a bump, s: 12 samples or more, and no longer than the motion; cut to a multiple of
         six samples. Narrow bumps let quantisation through, wide ones lose detail.
     hold : float, optional
         Time for which a logged torque acts, s, from its sample on: the shorter of the log's step
         and the controller's period. Default: as the recording says, its computing time included.
+
+    Warns
+    -----
+    DoubtfulRecording
+        Of a log that shows what makes every fit wrong, or torques that depend on the pose though
+        `GRAVITY` is not among the names.
     """
     instance("recording", recording, Recording)
     known_names(names)
@@ -114,7 +124,44 @@ def by_modulation(
         return [regressor_columns(row, names, like) for row in rows]
 
     kept, bent = kept_bumps(sure, bumps[0]), (bumps[2], bumps[2])
+    if isinstance(recording, LoggedRecording) and not set(GRAVITY) & set(names):
+        _warn_of_weight(recording, averaged(recording.q), kept, bumps[0], later)
     return independent_equations(recording, names, averaged, sure, kept, bent, later, acting[1])
+
+
+def _warn_of_weight(recording, rows, kept, bump, later) -> None:
+    """Warn if torques that only the pose explains are more than half of what `rows` leave over.
+
+    Each joint has an offset in any case.
+    """
+    q1, both, none = recording.q[..., 0], recording.q.sum(-1), np.zeros(recording.q.shape[:-1])
+    shared = np.sin(both), np.cos(both)
+    poses = np.stack([[np.sin(q1), np.cos(q1), *shared], [none, none, *shared]]) @ bump.T
+    torque = np.moveaxis(recording.tau, -1, 0) @ later.T
+    size = np.array([y[keep].std() for y, keep in zip(torque, kept)])
+    if not (size > 0).all():
+        return
+    y = np.concatenate([(x[keep] - x[keep].mean()) / s for x, keep, s in zip(torque, kept, size)])
+    columns = np.concatenate([a[keep] / s for a, keep, s in zip(rows, kept, size)])
+    pose = np.concatenate([
+        np.moveaxis(x, 0, -1)[keep] / s for x, keep, s in zip(poses, kept, size)
+    ])  # fmt: skip
+    joint = np.repeat([0, 1], [keep.sum() for keep in kept])
+    columns = np.hstack([columns, joint[:, None] == [0, 1]])
+    left = []
+    for a in (columns, np.hstack([columns, pose])):
+        residual = y - a @ np.linalg.lstsq(a, y, rcond=1e-7)[0]
+        left.append(np.bincount(joint, residual**2) / max(y.size - a.shape[1], 1))
+    share = (left[0] - left[1]) / np.bincount(joint, y**2) * y.size
+    heavy = [JOINTS[j] for j in range(2) if left[1][j] < 0.5 * left[0][j] and share[j] > 0.002]
+    if heavy:
+        warnings.warn(
+            "torques that depend on the pose are most of what would be left over at the "
+            f"{' and '.join(heavy)}, as if the arm hung: without GRAVITY among the names an "
+            "estimate is wrong. A spring or a cable looks alike.",
+            DoubtfulRecording,
+            stacklevel=3,
+        )
 
 
 def repeat(
@@ -184,6 +231,7 @@ def _modulated(bumps, after, velocity, q) -> list[dict]:
         "g2": weight,
         "F_v1": -q1 @ w1,
         "F_c1": sign[..., 0] @ after.T,
+        "offset1": np.ones_like(q1) @ w,
     }
     elbow = {
         "b": (s2 * v1 * (v1 + v2)) @ w - (c2 * v1) @ w1,
@@ -191,5 +239,6 @@ def _modulated(bumps, after, velocity, q) -> list[dict]:
         "g2": weight,
         "F_v2": -q2 @ w1,
         "F_c2": sign[..., 1] @ after.T,
+        "offset2": np.ones_like(q2) @ w,
     }
     return [shoulder, elbow]
