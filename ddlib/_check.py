@@ -27,9 +27,10 @@ def told(value) -> str:
 def finite_array(name: str, value, last: int | None = None) -> np.ndarray:
     """`value` as a float array; TypeError or ValueError otherwise.
 
-    Refused are what is no real number, booleans and texts among them, NaN and infinity, and a last
-    axis that is not `last` long.
+    Refused are what is no real number, booleans and texts among them, NaN and infinity, masked
+    entries, and a last axis that is not `last` long.
     """
+    unmasked(name, value)
     array = None
     try:
         given = np.asarray(value)
@@ -45,6 +46,15 @@ def finite_array(name: str, value, last: int | None = None) -> np.ndarray:
     if not np.isfinite(array).all():
         raise ValueError(f"{name} must be finite, got NaN or infinity")
     return array
+
+
+def unmasked(name: str, value) -> None:
+    """Refuse an array with masked entries: arithmetic would take what is under the mask."""
+    masked = np.count_nonzero(np.ma.getmask(value))
+    if masked:
+        raise ValueError(
+            f"{name} must have no masked entries, got {masked}: leave them out, or fill them in"
+        )
 
 
 def _is_real(x) -> bool:

@@ -43,13 +43,15 @@ def pick_and_place(extents_deg, t, duration: float = MOTION_SECONDS) -> Trajecto
     Parameters
     ----------
     extents_deg : array_like, shape (..., 2)
-        Extents theta of shoulder and elbow; outside 0 to 45 with an `OutsideFamilyWarning`.
+        Extents theta of shoulder and elbow; outside 0 to 45 with an `OutsideFamilyWarning`, and
+        with a warning if they look like radians.
     t : array_like, shape (time,)
         Times, s.
     duration : float
         Length of the motion, s: the 3 of the formula.
     """
     extents_deg = finite_array("extents_deg", extents_deg, 2)
+    warn_of_radians(extents_deg)
     t = shaped("t", t, "(time,)")
     number("duration", duration, 0.0, open_low=True)
     if ((extents_deg < 0) | (extents_deg > MAX_EXTENT_DEG)).any():
@@ -71,6 +73,21 @@ def pick_and_place(extents_deg, t, duration: float = MOTION_SECONDS) -> Trajecto
     return Trajectory(*(np.moveaxis(x, (0, 1), (-2, -1)) for x in scaled))
 
 
+def warn_of_radians(extents_deg) -> None:
+    """Warn of extents that would hardly move an arm if they were degrees, as radians do.
+
+    They are small, each below pi, and not all of them whole numbers, as degrees often are.
+    """
+    extents = finite_array("extents_deg", extents_deg, 2)
+    largest = np.abs(extents).max(initial=0.0)
+    if 0 < largest < np.pi and (extents % 1).any():
+        warnings.warn(
+            f"extents_deg are {largest:.3g} degrees at most, which hardly moves an arm; if they "
+            "are radians, give np.rad2deg of them",
+            stacklevel=3,
+        )
+
+
 def random_extents(n: int, seed: int, max_deg: float = MAX_EXTENT_DEG) -> np.ndarray:
     """Extents of `n` random members of the family, degrees, shape ``(n, 2)``.
 
@@ -89,6 +106,7 @@ def smooth_pick_and_place(extents_deg, t, speed: float = 1.0) -> Trajectory:
     theta are ``(..., 2)`` in degrees; the motion lasts ``3 / speed`` s, before and after it the
     reference rests. Velocities grow with the `speed` s, accelerations with its square.
     """
+    warn_of_radians(extents_deg)
     shaped("t", t, "(time,)")
     number("speed", speed, 0.0, open_low=True)
     size = -np.deg2rad(finite_array("extents_deg", extents_deg, 2))[..., None, :] / 2

@@ -2,10 +2,11 @@
 
 import re
 
+import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from ddlib._check import integer, non_negative, number, one_of, positive
+from ddlib._check import integer, non_negative, number, one_of, positive, shaped
 
 
 @settings(deadline=None, max_examples=60)
@@ -38,3 +39,10 @@ def test_messages_name_argument_range_and_value():
     assert positive("x", [1, 2]).tolist() == [1.0, 2.0]
     assert non_negative("kp", [0, 1.5], 2).tolist() == [0.0, 1.5]
     assert one_of("mode", "a", "ab") == "a"
+
+
+def test_masked_entries_are_refused_and_masks_without_any_are_not():
+    spiky = np.ma.masked_greater([1.0, 2.0, 9.0, 8.0], 5.0)
+    with pytest.raises(ValueError, match="x must have no masked entries, got 2"):
+        shaped("x", spiky, (4,))
+    assert shaped("x", spiky[:2], (2,)).tolist() == [1.0, 2.0]

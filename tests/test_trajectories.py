@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from ddlib.trajectories import OutsideFamilyWarning, pick_and_place, random_extents, time_grid
+from ddlib.trajectories import (
+    OutsideFamilyWarning,
+    pick_and_place,
+    random_extents,
+    smooth_pick_and_place,
+    time_grid,
+)
 
 family = st.tuples(st.floats(0, 45), st.floats(0, 45))
 
@@ -36,7 +42,7 @@ def test_out_to_the_extent_and_back(extents):
     np.testing.assert_allclose(qd[0], -theta * np.pi / 3)
     np.testing.assert_allclose(qdd, -((np.pi / 3) ** 2) * q, atol=1e-15)  # a harmonic motion
     with warnings.catch_warnings():
-        warnings.simplefilter("error")
+        warnings.simplefilter("error", OutsideFamilyWarning)
         fine = pick_and_place(extents, np.linspace(0, 3, 3001)).q
     np.testing.assert_allclose(np.abs(fine).max(0), theta, atol=1e-15)
     np.testing.assert_allclose(fine[1:3000], fine[2999:0:-1], atol=1e-12)  # back as it went out
@@ -56,6 +62,27 @@ def test_extents_outside_the_family_warn_and_still_work(extents):
         q = pick_and_place(extents, [1.5]).q
     np.testing.assert_allclose(q[..., 0, :], -np.deg2rad(extents))
     assert caught[0].filename == __file__  # points at the caller
+
+
+RADIANS = "if they are radians"
+
+
+@pytest.mark.parametrize("make", [pick_and_place, smooth_pick_and_place])
+@pytest.mark.parametrize("extents", [np.deg2rad([45.0, 30.0]), [(0.8, 0.0), (0.1, 1.5)]])
+def test_extents_that_look_like_radians_warn_once(make, extents):
+    with pytest.warns(UserWarning, match=RADIANS) as caught:
+        make(extents, [1.5])
+    assert len(caught) == 1 and caught[0].filename == __file__
+
+
+@pytest.mark.parametrize("make", [pick_and_place, smooth_pick_and_place])
+@pytest.mark.parametrize(
+    "extents", [(5.0, 0.0), (1, 2), (0.0, 0.0), (5.4, 0.3), [(0.5, 0), (20, 0)]]
+)
+def test_small_extents_in_degrees_do_not(make, extents):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        make(extents, [1.5])
 
 
 def test_random_extents_fill_the_square():

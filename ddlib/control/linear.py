@@ -145,9 +145,11 @@ class Margins(NamedTuple):
 
 
 def margins(loop) -> Margins:
-    """Gain and phase margins of an `opened_loop` or a `loop_gain`, by python-control.
+    """Gain and phase margins of an `opened_loop` or a `loop_gain`.
 
-    The loop has one input and one output, in continuous time or, with a `dt`, sampled.
+    The loop has one input and one output, in continuous time or, with a `dt`, sampled. Frequencies
+    at which its gain is 1 or its phase is -180 degrees are zeros of state-space systems: a
+    polynomial would lose its digits if the loop had a long delay.
     """
     instance("loop", loop, control.StateSpace, control.TransferFunction)
     if (loop.ninputs, loop.noutputs) != (1, 1):
@@ -156,28 +158,31 @@ def margins(loop) -> Margins:
         )
     if loop.dt is True:
         raise ValueError("loop must have a sampling period in s as its dt, got dt=True")
-    period = loop.dt or 0.0
+    period, loop = loop.dt or 0.0, control.ss(loop)
     if period:
-        # To the w plane, z = (1 + w T / 2) / (1 - w T / 2): the unit circle becomes the imaginary
-        # axis, on which python-control's polynomials are well conditioned.
-        loop = control.ss(loop)
+        # z = (1 + w) / (1 - w): the unit circle becomes the imaginary axis
         state = np.eye(loop.nstates)
         inverse = np.linalg.inv(loop.A + state)
-        A = 2 / period * inverse @ (loop.A - state)
-        B = 2 / period * inverse @ loop.B
-        C = 2 * loop.C @ inverse
+        A, B, C = inverse @ (loop.A - state), inverse @ loop.B, 2 * loop.C @ inverse
         loop = control.ss(A, B, C, loop.D - loop.C @ inverse @ loop.B)
-    gains, phases, _, _, crossovers, _ = control.stability_margins(loop, returnall=True)
-    if not len(phases):
+    mirrored = control.ss(-loop.A, loop.B, -loop.C, loop.D)  # the loop at -w
+    crossovers = _on_the_axis(loop * mirrored - 1)
+    if not crossovers.size:
         raise ValueError("loop must have a gain of 1 at some frequency, got none")
-    if period and loop.D[0, 0] < 0:  # w of infinity, the highest frequency samples can show
-        gains = np.append(gains, -1 / loop.D[0, 0])
+    phases = np.angle(-loop(1j * crossovers), deg=True)
     k = np.argmin(np.abs(phases))
-    crossover = crossovers[k]
-    if period:
-        crossover = 2 / period * np.arctan(crossover * period / 2)
+    # it is real there, at frequency 0, and at w of infinity, the highest that samples can show
+    real = np.real([*loop(1j * _on_the_axis(loop - mirrored)), loop.dcgain(), loop.D[0, 0]])
+    gains = -1 / real[np.isfinite(real) & (real < 0)]
+    crossover = 2 / period * np.arctan(crossovers[k]) if period else crossovers[k]
     upper, lower = min(gains[gains > 1], default=np.inf), max(gains[gains < 1], default=0.0)
     return Margins(float(phases[k]), float(crossover), float(upper), float(lower))
+
+
+def _on_the_axis(system) -> np.ndarray:
+    """Zeros of a system that lie on the positive imaginary axis: their imaginary parts."""
+    zeros = control.zeros(system)
+    return zeros.imag[(np.abs(zeros.real) < 1e-6 * np.abs(zeros)) & (zeros.imag > 0)]
 
 
 def proportional_limit(inertia, viscous, period) -> float:

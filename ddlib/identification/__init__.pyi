@@ -30,6 +30,7 @@ from .regression import (
     Combination as Combination,
     Equations as Equations,
     Estimate as Estimate,
+    ImpossibleArm as ImpossibleArm,
     excitation as excitation,
     from_states as from_states,
     least_squares as least_squares,

@@ -24,7 +24,7 @@ from ddlib.identification.averaging import (
     samples_apart,
     where_sign_is_sure,
 )
-from ddlib.identification.equations import modulated
+from ddlib.identification.equations import POSE, modulated
 from ddlib.identification.regression import (
     FRICTION,
     GRAVITY,
@@ -41,8 +41,7 @@ from ddlib.logs.readings import at_rest, readings, spikes, steady
 from ddlib.simulation import Recording
 from ddlib.trajectories import Trajectory
 
-WEIGHT = (*GRAVITY, "g1_cos", "g2_cos")
-EVERY = (*RIGID, "b_sin", *WEIGHT, *FRICTION, *OFFSETS)
+EVERY = (*RIGID, "b_sin", *POSE, *FRICTION, *OFFSETS)
 """All parameters: coupling and weight are those of angles whose zeros may be anywhere."""
 
 SAMPLES = 60  # of a bump, up to twice as many: more tell a check nothing
@@ -452,7 +451,7 @@ def _lag(pieces, width, least) -> Iterator[Finding]:
 
 def _pose(pieces, width, fit, names) -> Iterator[Finding]:
     """Weight and offsets that are not among the parameters, and zeros of the angles."""
-    light = _fit(pieces, width, [name for name in EVERY if name not in WEIGHT])
+    light = _fit(pieces, width, [name for name in EVERY if name not in POSE])
     heavy = np.zeros(2, bool)
     if light:
         explained = 1 - (fit.shares / light.shares) ** 2

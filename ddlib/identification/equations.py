@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -27,6 +28,8 @@ from ddlib.identification.averaging import (
 )
 from ddlib.identification.regression import (
     FRICTION,
+    GRAVITY,
+    OFFSETS,
     RIGID,
     Equations,
     from_states,
@@ -34,8 +37,12 @@ from ddlib.identification.regression import (
     regressor_columns,
 )
 from ddlib.identification.whitening import independent_equations
-from ddlib.logs import warn_of
+from ddlib.logs import DoubtfulRecording, LoggedRecording, warn_of
+from ddlib.logs.findings import JOINTS
 from ddlib.simulation import Recording, record
+
+POSE = ("g1", "g1_cos", "g2", "g2_cos")
+"""Weight of an arm whose zeros are anywhere: columns of `modulated`."""
 
 
 def by_differences(recording: Recording, names: Sequence[str] = RIGID + FRICTION) -> Equations:
@@ -78,13 +85,19 @@ def by_modulation(
     Parameters
     ----------
     names : sequence of str
-        Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
+        Parameters, from `RIGID`, `GRAVITY`, `FRICTION` and `OFFSETS`.
     width : float
         Width of a bump, s: 12 samples or more, and no longer than the motion; cut to a multiple of
         six samples. Narrow bumps let quantisation through, wide ones lose detail.
     hold : float, optional
         Time for which a logged torque acts, s, from its sample on: the shorter of the log's step
         and the controller's period. Default: as the recording says, its computing time included.
+
+    Warns
+    -----
+    DoubtfulRecording
+        Of a log that shows what makes every fit wrong, or torques that depend on the pose though
+        `GRAVITY` is not among the names.
     """
     instance("recording", recording, Recording)
     known_names(names)
@@ -108,13 +121,43 @@ def by_modulation(
     sure = where_sign_is_sure(recording, names)
     apart = samples_apart(recording)
 
-    def averaged(q) -> list[np.ndarray]:
+    def averaged(q, names=names) -> list[np.ndarray]:
         like = np.empty((*q.shape[:-2], len(later)))
         rows = modulated(bumps, after, five_point_velocity(q, recording.step, apart), q)
         return [regressor_columns(row, names, like) for row in rows]
 
     kept, bent = kept_bumps(sure, bumps[0]), (bumps[2], bumps[2])
+    if isinstance(recording, LoggedRecording) and not set(GRAVITY) & set(names):
+        torques = np.moveaxis(recording.tau, -1, 0) @ later.T
+        _warn_of_weight(names, lambda every: averaged(recording.q, every), torques, kept)
     return independent_equations(recording, names, averaged, sure, kept, bent, later, acting[1])
+
+
+def _warn_of_weight(names, columns, torques, kept) -> None:
+    """Warn if torques that only the pose explains are more than half of what `names` leave over.
+
+    Each joint has an offset in any case.
+    """
+    size = [tau[keep].std() for tau, keep in zip(torques, kept)]
+    if not min(size) > 0:
+        return
+    y = np.concatenate([tau[keep] / s for tau, keep, s in zip(torques, kept, size)])
+    joint = np.repeat([0, 1], [keep.sum() for keep in kept])
+    left = []
+    for more in (OFFSETS, OFFSETS + POSE):
+        rows = columns((*names, *more))
+        a = np.concatenate([x[keep] / s for x, keep, s in zip(rows, kept, size)])
+        residual = y - a @ np.linalg.lstsq(a, y, rcond=1e-7)[0]
+        left.append(np.bincount(joint, residual**2) / np.bincount(joint))
+    heavy = [JOINTS[j] for j in range(2) if left[1][j] < min(0.5 * left[0][j], left[0][j] - 0.002)]
+    if heavy:
+        warnings.warn(
+            "torques that depend on the pose are most of what would be left over at the "
+            f"{' and '.join(heavy)}, as if the arm hung: without GRAVITY among the names an "
+            "estimate is wrong. A spring or a cable looks alike.",
+            DoubtfulRecording,
+            stacklevel=3,
+        )
 
 
 def repeat(

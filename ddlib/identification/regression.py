@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -29,6 +30,10 @@ _ROUNDING = 1e-10  # of a column's size: what is smaller is rounding
 _SQUARED = 1e-14  # of a column's energy: what is smaller is rounding of its squares
 _ALIKE = 3.5  # deviations: what neighbouring residuals of noise hardly have in common
 _TOUCHED = 0.01  # of a unit direction: parameters that it touches less are told all the same
+
+
+class ImpossibleArm(UserWarning):
+    """No arm has the inertias that an estimate finds."""
 
 
 class Equations(NamedTuple):
@@ -135,13 +140,22 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
     of the normal equations' matrix times the blur's times the estimates (Fuller 1987); where it
     exceeds half of a standard error there is no interval.
 
+    Warns
+    -----
+    ImpossibleArm
+        If no arm has the inertias: its mass matrix would not be positive at every elbow angle.
+
     Raises
     ------
     ValueError
-        If there are no more equations than parameters, or nothing can be told.
+        If there are no more equations than parameters, nothing can be told, or an entry is masked,
+        NaN or infinite.
     """
     instance("equations", equations, Equations)
     integer("rounds", rounds, 1)
+    for a, y in zip(equations.regressor, equations.torque):
+        finite_array("equations.regressor", a, len(equations.names))
+        finite_array("equations.torque", y)
     names, equation_count = equations.names, sum(y.shape[-1] for y in equations.torque)
     if equation_count <= len(names):
         slow = not equation_count and any(name.startswith("F_c") for name in names)
@@ -157,7 +171,10 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
     if not unseen.shape[1]:
         estimate = _solved(names, regressors, torques, rounds)
         unsure = _biased(equations, estimate, np.eye(len(names)))
-        notes = (*notes, *_impossible(estimate), *_alike(equations, regressors, estimate))
+        impossible = _impossible(estimate)
+        for note in impossible:
+            warnings.warn(note, ImpossibleArm, stacklevel=2)
+        notes = (*notes, *impossible, *_alike(equations, regressors, estimate))
         return replace(estimate, unsure=unsure, notes=notes)
     if unseen.shape[1] == len(names):
         raise ValueError(f"equations must determine some of {', '.join(names)}; they do not")
@@ -400,7 +417,7 @@ def from_states(q, qd, qdd, torque, names: Sequence[str] = RIGID) -> Equations:
     """Equations at known states, one for every sample and joint.
 
     Angles (rad), velocities, accelerations and torques (N m) are ``(..., samples, 2)``; `names` are
-    parameters from `RIGID`, `GRAVITY` and `FRICTION`.
+    parameters from `RIGID`, `GRAVITY`, `FRICTION` and `OFFSETS`.
     """
     known_names(names)
     q, qd, qdd, torque = np.broadcast_arrays(
@@ -412,6 +429,7 @@ def from_states(q, qd, qdd, torque, names: Sequence[str] = RIGID) -> Equations:
     for j in range(2):
         row = dict(zip((*RIGID, *GRAVITY), np.moveaxis(rigid[..., j, :], -1, 0)))
         row |= {f"F_v{j + 1}": qd[..., j], f"F_c{j + 1}": sign[..., j]}
+        row[f"offset{j + 1}"] = np.ones_like(sign[..., j])
         regressors.append(regressor_columns(row, names, qd[..., j]))
     return Equations(tuple(names), tuple(regressors), (torque[..., 0], torque[..., 1]))
 
@@ -419,7 +437,7 @@ def from_states(q, qd, qdd, torque, names: Sequence[str] = RIGID) -> Equations:
 def true_parameters(arm: Arm, effects: Effects, names: Sequence[str]) -> np.ndarray:
     """What an identification should find; of the effects viscous and Coulomb friction are known.
 
-    Offsets are 0.
+    Logged torques are taken to be right: offsets are 0.
     """
     instance("arm", arm, Arm)
     instance("effects", effects, Effects)

@@ -55,7 +55,7 @@ def by_butterworth(
         Where the filter's gain is one half, Hz: several times the motion's own frequencies, below
         half the sampling rate.
     names : sequence of str
-        Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
+        Parameters, from `RIGID`, `GRAVITY`, `FRICTION` and `OFFSETS`.
     order : int
         Of the filter, which runs forwards and backwards.
     width : float or None
@@ -98,7 +98,7 @@ def by_kalman(
     recording : Recording
         Angles (rad) and torques (N m) on an even grid.
     names : sequence of str
-        Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
+        Parameters, from `RIGID`, `GRAVITY`, `FRICTION` and `OFFSETS`.
     noise : float, optional
         As in `kalman_states`.
     width, hold, rows

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddlib._check import filled, finite_array, instance, number, told
+from ddlib._check import filled, finite_array, instance, number, told, unmasked
 from ddlib.dynamics import Arm
 from ddlib.trajectories import Trajectory
 
@@ -46,6 +46,8 @@ class Recording:
         if self.control_step is not None:
             number("control_step", self.control_step, 0.0)
         number("computing_time", self.computing_time, 0.0)
+        unmasked("q", self.q)
+        unmasked("tau", self.tau)
 
     def __repr__(self):
         *runs, samples, joints = self.q.shape

@@ -115,6 +115,19 @@ def test_margins_are_where_the_loop_loses_its_stability(gains, delay):
         assert largest(1.001 * found.lower_gain) < 1 < largest(0.999 * found.lower_gain)
 
 
+@pytest.mark.parametrize("delay", [20, 60, 150])
+def test_a_long_delay_costs_phase_alone(delay):
+    """Each period turns the loop by its crossover times the period, and changes no gain."""
+    joint, gains, period = plant(2.0, 1.0), (30.0, 0.0, 2.0), 0.00025
+    prompt, late = (margins(opened_loop(joint, *gains, period, n)) for n in (0, delay))
+    assert late.crossover == pytest.approx(prompt.crossover)
+    lost = np.rad2deg(prompt.crossover * delay * period)
+    assert late.phase_deg == pytest.approx(prompt.phase_deg - lost)
+    for factor, stable in ((0.999, True), (1.001, False)):
+        scaled = np.multiply(factor * late.upper_gain, gains)
+        assert (abs(closed_loop(joint, *scaled, period, delay).poles()).max() < 1) == stable
+
+
 @settings(deadline=None, max_examples=60)
 @given(st.floats(0.05, 20), st.floats(-3.0, 1.5))
 def test_limit_separates_stable_from_unstable(inertia, power):

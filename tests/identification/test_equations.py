@@ -1,5 +1,6 @@
 """Identification from recordings: what each way makes of quantised, noisy data."""
 
+import warnings
 from dataclasses import replace
 from functools import cache
 
@@ -20,6 +21,7 @@ from ddlib.effects import (
 )
 from ddlib.identification import (
     FRICTION,
+    GRAVITY,
     RIGID,
     by_differences,
     by_modulation,
@@ -29,8 +31,9 @@ from ddlib.identification import (
     true_parameters,
 )
 from ddlib.identification.averaging import acting_time, bumps_held
+from ddlib.logs import DoubtfulRecording, LoggedRecording
 from ddlib.simulation import record
-from ddlib.trajectories import APPENDIX_I
+from ddlib.trajectories import APPENDIX_I, Trajectory, random_extents
 
 NAMES = RIGID + FRICTION
 SMOOTH = pd((300.0, 90.0), (35.0, 10.0))
@@ -145,3 +148,29 @@ def test_no_window_makes_smoothing_honest():
         assert np.isnan(least_squares(equations).half_width()).all()
         found = least_squares(equations._replace(biased=""))
         assert found.covers(truth)[:, :3].mean(0).min() < 0.5
+
+
+def logged(arm, seed, turned=0.0):
+    """A recording's motions as a log has them, the shoulder's angle counted from elsewhere."""
+    effects = replace(CMU_DD_ARM_II_EFFECTS, encoder=(Quantisation.encoder(14),))
+    run = record(arm, SMOOTH, random_extents(4, seed=seed), effects=effects, seed=seed)
+    q, tau = run.q[:, run.motion] - [turned, 0.0], run.tau[:, run.motion]
+    nothing = np.full(q.shape, np.nan)
+    reference = Trajectory(nothing, nothing, nothing)
+    return LoggedRecording(run.t[run.motion], reference, q, tau, *[nothing] * 3, control_step=0.0)
+
+
+@pytest.mark.parametrize("turned", [0.0, np.pi / 2, 2.0])
+def test_a_log_of_an_arm_that_hangs_asks_for_gravity(turned):
+    """Whichever way its angles are counted. A level arm asks for nothing, whatever is left out."""
+    hanging = replace(CMU_DD_ARM_II, gravity_moments=(30.0, 10.0))
+    for seed in range(3):
+        for names in (RIGID, NAMES):
+            with pytest.warns(DoubtfulRecording, match="without GRAVITY") as caught:
+                by_modulation(logged(hanging, seed, turned), names, hold=0.002)
+            assert caught[0].filename == __file__
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            by_modulation(logged(hanging, seed, turned), NAMES + GRAVITY, hold=0.002)
+            for names in (RIGID, NAMES):
+                by_modulation(logged(CMU_DD_ARM_II, seed, turned), names, hold=0.002)

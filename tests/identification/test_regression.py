@@ -11,8 +11,10 @@ from ddlib.effects import CoulombFriction, Effects, ViscousFriction
 from ddlib.identification import (
     FRICTION,
     GRAVITY,
+    OFFSETS,
     RIGID,
     Equations,
+    ImpossibleArm,
     by_kalman,
     by_modulation,
     excitation,
@@ -20,6 +22,7 @@ from ddlib.identification import (
     least_squares,
     true_parameters,
 )
+from ddlib.setups import STATE_FEEDBACK
 from ddlib.simulation import Recording
 from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place
 
@@ -155,10 +158,46 @@ def test_a_passive_joint_is_left_out_with_a_word():
     assert one.value == pytest.approx(1.4, abs=2e-3)
 
 
+def test_masked_torques_are_refused_wherever_they_come_in():
+    motion = states()
+    tau = torque(CMU_DD_ARM_II, motion)
+    spiky = np.ma.masked_greater(np.where(tau > np.percentile(tau, 98), 200.0, tau), 100.0)
+    equations = from_states(*motion, tau, ALL)
+    masked = equations._replace(torque=(spiky[:, 0], spiky[:, 1]))
+    for call, name in (
+        (lambda: from_states(*motion, spiky, ALL), "torque"),
+        (lambda: least_squares(masked), "equations.torque"),
+        (lambda: replace(locked(), tau=np.ma.masked_greater(locked().tau, 1.0)), "tau"),
+    ):
+        with pytest.raises(ValueError, match=f"^{name} must have no masked entries"):
+            call()
+
+
+@pytest.mark.parametrize("by", ["states", "modulation", "kalman"])
+def test_an_offset_of_the_torques_is_found(by):
+    names, offset = RIGID + FRICTION + OFFSETS, np.array([0.3, -0.05])
+    if by == "states":
+        motion = states()
+        equations = from_states(*motion, torque(IMI_ARM, motion) + offset, names)
+        truth = true_parameters(IMI_ARM, FRICTIONS, names)
+    else:
+        setup = STATE_FEEDBACK
+        recording = setup.record(APPENDIX_I[:5], effects=setup.effects.without("torque_sensor"))
+        off = replace(recording, tau=recording.tau + offset)
+        equations = (by_modulation if by == "modulation" else by_kalman)(off, names)
+        truth = true_parameters(setup.arm, setup.effects, names)
+    found = least_squares(equations)
+    assert found.names == names and (truth[-2:] == 0).all()
+    np.testing.assert_allclose(found.values[-2:], offset, atol=2e-3)
+    np.testing.assert_allclose(found.values[:-2], truth[:-2], rtol=0.02, atol=2e-3)
+
+
 def test_impossible_inertias_are_flagged():
     motion = states(60)
     arm = CMU_DD_ARM_II.regressor(*motion)[..., :3] @ [1.0, 0.7, 0.3]
-    found = least_squares(from_states(*motion, arm))
+    with pytest.warns(ImpossibleArm, match="No arm has these inertias") as caught:
+        found = least_squares(from_states(*motion, arm))
+    assert caught[0].filename == __file__
     assert found.notes == (
         "No arm has these inertias: its mass matrix would not be positive at every elbow angle.",
     )
