@@ -32,8 +32,8 @@ from ddlib.identification.regression import (
     RIGID,
     Equations,
     Estimate,
+    estimated,
     known_names,
-    least_squares,
     regressor_columns,
 )
 from ddlib.logs.findings import JOINTS, SEVERITIES, Check, Finding
@@ -258,7 +258,7 @@ def _fit(pieces, width, names=EVERY, blurred=False) -> _Fit | None:
         equations = _averaged(pieces, chosen, width, blurred)
         if min(y.shape[-1] for y in equations.torque) > len(names):
             try:
-                return _Fit(equations, least_squares(equations))
+                return _Fit(equations, estimated(equations))
             except ValueError:
                 pass
     return None
@@ -375,7 +375,7 @@ def _signs(pieces, fit, works) -> Iterator[Finding]:
         try:
             alone = _Fit(
                 Equations(names, (regressor,), (torques[j],), (blur[j],)),
-                least_squares(Equations(names, (regressor,), (torques[j],), (blur[j],))),
+                estimated(Equations(names, (regressor,), (torques[j],), (blur[j],))),
             )
         except ValueError:
             continue
@@ -426,7 +426,7 @@ def _lag(pieces, width, least) -> Iterator[Finding]:
         )
         names = (*at.equations.names, "lag")
         change, error = _Fit(
-            at.equations, least_squares(Equations(names, columns, at.equations.torque))
+            at.equations, estimated(Equations(names, columns, at.equations.torque))
         ).of("lag")
         if not np.isfinite(change):
             return

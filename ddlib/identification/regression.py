@@ -156,6 +156,14 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
     for a, y in zip(equations.regressor, equations.torque):
         finite_array("equations.regressor", a, len(equations.names))
         finite_array("equations.torque", y)
+    estimate = estimated(equations, rounds)
+    for note in _impossible(estimate):
+        warnings.warn(note, ImpossibleArm, stacklevel=2)
+    return estimate
+
+
+def estimated(equations: Equations, rounds: int = 4) -> Estimate:
+    """`least_squares` of equations that were checked, without a warning."""
     names, equation_count = equations.names, sum(y.shape[-1] for y in equations.torque)
     if equation_count <= len(names):
         slow = not equation_count and any(name.startswith("F_c") for name in names)
@@ -171,10 +179,7 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
     if not unseen.shape[1]:
         estimate = _solved(names, regressors, torques, rounds)
         unsure = _biased(equations, estimate, np.eye(len(names)))
-        impossible = _impossible(estimate)
-        for note in impossible:
-            warnings.warn(note, ImpossibleArm, stacklevel=2)
-        notes = (*notes, *impossible, *_alike(equations, regressors, estimate))
+        notes = (*notes, *_impossible(estimate), *_alike(equations, regressors, estimate))
         return replace(estimate, unsure=unsure, notes=notes)
     if unseen.shape[1] == len(names):
         raise ValueError(f"equations must determine some of {', '.join(names)}; they do not")
