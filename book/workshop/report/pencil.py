@@ -10,25 +10,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from ddlib.analysis import LAYERS, basis
-from ddlib.learning import TorqueModel, Weights
+from ddlib.analysis import LAYERS, basis, savitzky_golay
+from ddlib.learning import TorqueModel
 
 _BIASES = {"hidden": "hidden_bias", "direct": "output_bias"}  # of the layers
-
-
-def _moments(width: int, step: float) -> np.ndarray:
-    """What a filter's products with these rows are: its moments of order 0 to 3, (4, width)."""
-    x = step * (np.arange(width) - width // 2)
-    return x ** np.arange(4)[:, None] / np.array([1, 1, 2, 6])[:, None]
 
 
 def moment_filters(width: int, step: float) -> np.ndarray:
     """Filters of least energy that have one moment each, shape (3, width).
 
-    `ddlib.analysis.gains` of them is the identity, and their third moments are zero: they give
-    position, velocity and acceleration at the centre of any window that is a cubic.
+    `ddlib.analysis.gains` of them is the identity, and their third moments are zero. The filters of
+    Savitzky & Golay for position, velocity and acceleration are just these.
     """
-    return np.linalg.pinv(_moments(width, step)).T[:3]
+    return np.stack([savitzky_golay(width, order, step) for order in range(3)])
 
 
 def knobs(width: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
@@ -39,11 +33,9 @@ def knobs(width: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     shapes are not quite the moments: a constant has a second moment, too, and who wants a stiffness
     without an inertia has to draw a parabola against it.
     """
-    shapes = basis(width)[:3]
-    return {
-        "shape": (shapes, shapes),
-        "moment": (_moments(width, 1.0)[:3], moment_filters(width, 1.0)),
-    }
+    shapes, x = basis(width)[:3], np.arange(width) - width // 2
+    moments = np.stack([np.ones(width), x, x**2 / 2])
+    return {"shape": (shapes, shapes), "moment": (moments, moment_filters(width, 1.0))}
 
 
 def added(model: TorqueModel, change: dict[str, np.ndarray]) -> TorqueModel:
@@ -97,9 +89,3 @@ def written(model: TorqueModel, windows, change, filters, rounds: int = 1) -> To
         slopes = output_slopes(result, windows)[..., None, None]
         result = added(model, {"direct": scaled / slopes})
     return result
-
-
-def blank(members: int, width: int, initial: float, seed: int) -> Weights:
-    """Random networks whose direct weights are zero: paper to write on."""
-    weights = Weights.random(members, width, initial=initial, seed=seed)
-    return replace(weights, direct_weights=np.zeros_like(weights.direct_weights))

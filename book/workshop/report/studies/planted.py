@@ -119,14 +119,14 @@ def answers(day: Day, kind: Kind, model: TorqueModel, pairs, layers=tuple(LAYERS
 # --- by setting -------------------------------------------------------------------------------
 
 
-def _summary(days: list, more: bool):
+def summary(days: list, more: bool):
     """Of each number its mean and the half of its 95 % interval; with `more` its extremes, too.
 
     The interval is of the mean over recordings, each the mean of its networks; the extremes are
     those of networks.
     """
     if isinstance(days[0], dict):
-        return {name: _summary([day[name] for day in days], more) for name in days[0]}
+        return {name: summary([day[name] for day in days], more) for name in days[0]}
     means = np.array([day.mean(0) for day in days])
     half = student.ppf(0.975, len(days) - 1) * means.std(0, ddof=1) / np.sqrt(len(days))
     every = np.concatenate(days)
@@ -144,7 +144,7 @@ def _means(days: list):
 def _together(days: list[dict], truth: list, more: bool = False) -> dict:
     """One row of all recordings; with `more` M11 and the shoulder's knob network by network."""
     row = {"truth": np.mean(truth, 0), "names": _means([day.pop("names") for day in days])}
-    row |= _summary(days, more)
+    row |= summary(days, more)
     if more:
         row["every"] = {
             "M11": np.concatenate([day["read"][:, 0, 0, 2] for day in days]),
