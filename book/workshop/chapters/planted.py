@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ddlib.figures.style import COLOURS, INK, Illustration, illustrate
-from ddlib.setups import JOINT_DAMPING
+from ddlib.setups import INITIAL, JOINT_DAMPING
 from workshop.report import results
 
 KINDS = {
@@ -21,19 +21,26 @@ KINDS = {
     "shifted": "shifted in time",
     "random phases": "random phases",
 }
-"""Kinds of torques in the order of the figure, and what it calls them."""
+"""Kinds of torques in the order of the figure, and what it calls them; with inertia first."""
+
+_WITH_INERTIA = 3
 
 
 @cache
-def of_kinds(reading: str = JOINT_DAMPING.name) -> Mapping[str, Mapping]:
-    """Networks of each kind of torques, trained for long from the book's start."""
-    (row,) = (x for x in results.read("planted")["long"] if x["setting"]["reading"] == reading)
+def of_kinds(long: bool = True) -> Mapping[str, Mapping]:
+    """Networks of each kind of torques from the book's start, by descent as long as the lessons'.
+
+    Or, in the study with most networks, five times as `long`.
+    """
+    rows = results.read("planted")["long" if long else "grid"]
+    wanted = {"reading": JOINT_DAMPING.name, "width": 21, "initial": INITIAL}
+    (row,) = (x for x in rows if {k: x["setting"][k] for k in wanted} == wanted)
     return row["kinds"]
 
 
-def acceleration(kind: str, layer: str = "hidden") -> float:
-    """Share of acceleration names among what training added to filters, per cent."""
-    return 100 * float(of_kinds()[kind]["names"][layer]["added"]["acceleration"])
+def acceleration(kind: str, long: bool = False) -> float:
+    """Share of acceleration names among what training added to hidden filters, per cent."""
+    return 100 * float(of_kinds(long)[kind]["names"]["hidden"]["added"]["acceleration"])
 
 
 def every(kind: str, what: str) -> np.ndarray:
@@ -45,7 +52,10 @@ def shapes_and_sizes() -> Illustration:
     """Shapes, sizes and answers of networks, by the torques that they learnt."""
     own = float(of_kinds()["the arm"]["truth"][0][0][2])
     panels = {
-        "acceleration shapes, %": ({kind: [acceleration(kind)] for kind in KINDS}, None),
+        "acceleration shapes, %": (
+            {k: [acceleration(k), acceleration(k, True)] for k in KINDS},
+            None,
+        ),
         "inertia read, kg m²": ({kind: every(kind, "M11") for kind in KINDS}, own),
         "answer to the knob": ({kind: every(kind, "knob") for kind in KINDS}, 1.0),
     }
@@ -54,11 +64,16 @@ def shapes_and_sizes() -> Illustration:
         axes = figure.subplots(1, len(panels), sharey=True)
         for axis, (label, (shown, arm)) in zip(axes, panels.items()):
             for k, values in enumerate(shown.values()):
-                axis.plot(values, np.full(len(values), k), "o", color=COLOURS[min(k, 1)], ms=4)
-                axis.plot([np.mean(values)] * 2, [k - 0.3, k + 0.3], color=INK, lw=2)
+                colour = COLOURS[0 if k < _WITH_INERTIA else 1]
+                if arm is None:
+                    axis.plot(values, [k, k], color=colour, lw=1)
+                    axis.plot(values[:1], [k], "o", color=colour, ms=7)
+                    axis.plot(values[1:], [k], "o", color=colour, ms=7, mfc="none")
+                else:
+                    axis.plot(values, np.full(len(values), k), "o", color=colour, ms=4)
+                    axis.plot([np.mean(values)] * 2, [k - 0.3, k + 0.3], color=INK, lw=2)
+                    axis.axvline(arm, color=INK, ls="--", lw=1.0)
             axis.axvline(0, color=INK, lw=0.7)
-            if arm is not None:
-                axis.axvline(arm, color=INK, ls="--", lw=1.0)
             axis.grid(visible=False, axis="y")
             axis.set(xlabel=label, ylim=(len(KINDS) - 0.5, -0.6))
         axes[0].set_yticks(range(len(KINDS)), list(KINDS.values()))

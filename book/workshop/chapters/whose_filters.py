@@ -203,6 +203,7 @@ def _quoted() -> None:
         quote(f"whose-named-{name}", 100 * start.named(JOINT_DAMPING.name, size).mean())
     for name, kind in (("arm", "the arm"), ("position", "position alone")):
         quote(f"whose-added-{name}", planted.acceleration(kind))
+        quote(f"whose-added-{name}-long", planted.acceleration(kind, long=True))
 
 
 def _exercise(number: int, given, *others) -> Exercise:
