@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from ddlib.analysis import gains, mean_gradient
-from ddlib.dynamics import IMI_ARM
+from ddlib.dynamics import IMI_ARM, with_load
 from ddlib.figures.style import COLOURS, INK, Illustration, illustrate
 from ddlib.learning import TorqueModel, Weights, cases
-from ddlib.setups import INITIAL, JOINT_DAMPING, split
+from ddlib.setups import INITIAL, JOINT_DAMPING, split, true_states
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote, scientific
-from workshop.chapters import excitation
+from workshop.chapters import excitation, planted
 from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.chapters.index import both
+from workshop.chapters.planted import shapes_and_sizes as shapes_and_sizes
 from workshop.chapters.whose_filters import given, of_torques, trained
+from workshop.chapters.widgets.pencil import TurnTheParabola, WriteTheLoad
 from workshop.chapters.widgets.weigh import WeighTheArm as WeighTheArm
 from workshop.report import committed, results
 from workshop.report.measures import filter_trial as trial
@@ -49,6 +52,53 @@ def gradients() -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
     q = training.q_true[:, training.motion]
     own, other = (arm.mass_matrix(q).mean((0, 1)) for arm in (TRIAL.arm, IMI_ARM))
     return by_torques, {name: other if "another" in name else own for name in by_torques}
+
+
+_TURNED = {
+    "own": "the arm's torques",
+    "position": "position alone",
+    "velocity": "velocity alone",
+    "shifted": "shifted in time",
+}
+
+
+@cache
+def _networks() -> dict[str, TorqueModel]:
+    """One network for each kind of torques that the knob is tried on."""
+    begin = Weights.random(1, _WIDTH, TRIAL.hidden, initial=INITIAL)
+    weights = trained(list(_TURNED), Weights.concatenate([begin] * len(_TURNED)))
+    return {
+        name: TorqueModel(weights[k : k + 1], given(kind).inputs, given(kind).outputs, LOG_STEP)
+        for k, (kind, name) in enumerate(_TURNED.items())
+    }
+
+
+def turn() -> TurnTheParabola:
+    """The knob, along trajectory 6."""
+    test = split(TRIAL.record())[1]
+    q, _, qdd = np.moveaxis(true_states(test, TRIAL).reshape(-1, 2, 3), -1, 0)
+    inertial = np.einsum("nij,nj->ni", TRIAL.arm.mass_matrix(q), qdd)
+    return TurnTheParabola(_networks(), cases(test, _WIDTH)[0], inertial)
+
+
+def write() -> WriteTheLoad:
+    """The pencil, on the network of the arm's own torques."""
+    training = split(TRIAL.record())[0]
+    q = training.q[:, training.motion]
+
+    @cache
+    def motion(load):
+        loaded = replace(TRIAL, arm=with_load(TRIAL.arm, load))
+        return cases(split(loaded.record())[1], _WIDTH)
+
+    def inertia(load):
+        masses = (
+            arm.mass_matrix(q).mean((0, 1)) for arm in (with_load(TRIAL.arm, load), TRIAL.arm)
+        )
+        return np.subtract(*masses)
+
+    model = next(iter(_networks().values()))
+    return WriteTheLoad(model, cases(training, _WIDTH)[0], motion, inertia)
 
 
 def inertia_beside() -> Illustration:
@@ -127,6 +177,11 @@ def _quoted() -> None:
         half = np.median(excitation.cell(drive, 1.0)["half"])
         quote(name, 1e6 * half)
         quote(name.replace("half", "left"), 100 * half / (half + 1e-5))
+    for name, kind in (("arm", "the arm"), ("position", "position alone"), ("shifted", "shifted")):
+        answers = planted.every(kind, "knob")
+        quote(f"inertia-knob-{name}", answers.mean())
+        quote(f"inertia-knob-{name}-least", answers.min())
+        quote(f"inertia-knob-{name}-most", answers.max())
     row, whole = paths()[_carried()], paths().sum(0)
     for name, values in {"row": row, "row-network": whole}.items():
         quote(f"inertia-{name}", values[2])

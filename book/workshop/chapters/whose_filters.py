@@ -23,7 +23,7 @@ from ddlib.learning import (
 from ddlib.setups import INITIAL, JOINT_DAMPING, split, true_states
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote
-from workshop.chapters import index, start
+from workshop.chapters import index, planted, start
 from workshop.chapters.convolution_filters import _dots, named_in_trial
 from workshop.chapters.exercises import Exercise, judging
 from workshop.chapters.widgets.starts import UnitFromFiveStarts as UnitFromFiveStarts
@@ -46,6 +46,10 @@ ROUNDS = {
         "learnt what another arm would need for the same motion",
         "This round was not fair: both torques go with the motion, and so do both shapes.",
     ),
+    "position": (
+        "learnt a spring's torques, of position alone",
+        "No arm and no acceleration is in them, and yet the shapes are the same.",
+    ),
 }
 """What the other network of each round learnt, and what is said to it after the guess."""
 
@@ -65,12 +69,19 @@ def torques(kind: str) -> np.ndarray:
     """Torques along the walk's five training motions, N m, shape (cases, joint).
 
     The arm's "own", or another kind by its name in `ROUNDS`: of unrelated ones the most typical
-    draw of the trial, and `again` the next one.
+    draw of the trial, and `again` the next one. A spring's go with "position", and a damper's with
+    "velocity"; both have the size of the arm's.
     """
     training = split(TRIAL.record())[0]
     own = training.tau[:, training.motion]
+    q, qd, qdd = np.moveaxis(true_states(training, TRIAL), -1, 0)
+    size = own.std((0, 1))
     if kind == "another arm":
-        own = IMI_ARM.inverse_dynamics(*np.moveaxis(true_states(training, TRIAL), -1, 0))
+        own = IMI_ARM.inverse_dynamics(q, qd, qdd)
+    elif kind == "position":
+        own = size / q.std((0, 1)) * q
+    elif kind == "velocity":
+        own = size / qd.std((0, 1)) * qd
     elif kind != "own":
         name, _, again = kind.partition(", ")
         draw = typical(trial.row(_WIDTH)["nulls"][name])[int(bool(again))]
@@ -190,6 +201,9 @@ def _quoted() -> None:
     quote("whose-draws", study["draws"])
     for name, size in (("small", 0.03), ("large", 0.3)):
         quote(f"whose-named-{name}", 100 * start.named(JOINT_DAMPING.name, size).mean())
+    for name, kind in (("arm", "the arm"), ("position", "position alone")):
+        quote(f"whose-added-{name}", planted.acceleration(kind))
+        quote(f"whose-added-{name}-long", planted.acceleration(kind, long=True))
 
 
 def _exercise(number: int, given, *others) -> Exercise:
