@@ -66,6 +66,12 @@ def how_many(count: int, total: int) -> str:
     return f"all {total}" if count == total else f"{count or 'none'} of {total}"
 
 
+def plural(count: int, thing: str) -> str:
+    """A count of things for a sentence: ``1 stretch``, ``2,000 samples``."""
+    ending = "es" if thing.endswith(("ch", "s")) else "s"
+    return f"{count:,} {thing}{'' if count == 1 else ending}"
+
+
 def quote(name: str, value) -> None:
     """Keep a computed number under a name, for the prose of the page to quote."""
     from IPython.display import display

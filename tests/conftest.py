@@ -13,7 +13,9 @@ import firefox
 import pytest
 from bs4 import BeautifulSoup
 from hypothesis import settings
+from widget_pages import CALM, NEXT_FRAME, page_of
 
+from workshop.report import results
 from workshop.report.evidence import verdicts
 from workshop.report.evidence.claims import SHARED
 
@@ -40,6 +42,12 @@ def pytest_collection_finish(session):
 def planted_members(monkeypatch):
     """Measures may be tested on planted members, few enough to reckon by hand."""
     monkeypatch.setattr(verdicts, "FEWEST", 1)
+
+
+@pytest.fixture
+def planted_results(monkeypatch):
+    """``planted_results(NAME=content)``: committed results, made to be reckoned by hand."""
+    return lambda **planted: monkeypatch.setattr(results, "read", planted.__getitem__)
 
 
 @pytest.fixture(scope="session")
@@ -118,6 +126,25 @@ class Visit:
         self.responses.append(response)
         if response.status >= 400:
             self.problems.append(f"{response.status}: {response.url[:200]}")
+
+
+@pytest.fixture
+def page_with(tmp_path, visit):
+    """``page_with(widget)``: an open page with widgets alone, on which nothing may go wrong.
+
+    `query` ends its address, `calm` is a reader who wants no motion; other options are those of
+    `widget_pages.page_of`.
+    """
+    opened = []
+
+    def open_page(*widgets, query="", calm=False, **options):
+        address = page_of(tmp_path / "page.html", *widgets, **options)
+        opened.append(visit(f"{address}{query}", **(CALM if calm else {})))
+        opened[-1].page.evaluate(NEXT_FRAME)
+        return opened[-1].page
+
+    yield open_page
+    assert not [problem for each in opened for problem in each.problems]
 
 
 @pytest.fixture

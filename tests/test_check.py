@@ -46,18 +46,3 @@ def test_masked_entries_are_refused_and_masks_without_any_are_not():
     with pytest.raises(ValueError, match="x must have no masked entries, got 2"):
         shaped("x", spiky, (4,))
     assert shaped("x", spiky[:2], (2,)).tolist() == [1.0, 2.0]
-
-
-def test_shapes():
-    for shape, fits, misses in (
-        ((2, 3), [(2, 3)], [(3, 2), (2,), (2, 3, 1), (12, 3), ()]),
-        ((), [()], [(1,)]),
-        ("(time,)", [(1,), (40,), (0,)], [(), (1, 1)]),
-        ("(..., time, 2)", [(5, 2), (3, 5, 2), (12, 3, 5, 2)], [(2,), (2, 5), (5, 12)]),
-    ):
-        for size in fits:
-            assert shaped("x", np.zeros(size), shape).shape == size
-        for size in misses:
-            told = re.escape(f"x must have shape {shape}, got {size}")
-            with pytest.raises(ValueError, match=told):
-                shaped("x", np.zeros(size), shape)

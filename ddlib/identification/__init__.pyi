@@ -1,6 +1,9 @@
 from .averaging import (
     encoder_step as encoder_step,
 )
+from .checking import (
+    check_recording as check_recording,
+)
 from .equations import (
     by_differences as by_differences,
     by_modulation as by_modulation,

@@ -29,6 +29,7 @@ from ddlib.identification.averaging import (
 from ddlib.identification.regression import (
     FRICTION,
     GRAVITY,
+    OFFSETS,
     RIGID,
     Equations,
     from_states,
@@ -36,10 +37,12 @@ from ddlib.identification.regression import (
     regressor_columns,
 )
 from ddlib.identification.whitening import independent_equations
-from ddlib.logs.checking import DoubtfulRecording, warn_of_log
+from ddlib.logs import DoubtfulRecording, LoggedRecording, warn_of
 from ddlib.logs.findings import JOINTS
-from ddlib.logs.log import LoggedRecording
 from ddlib.simulation import Recording, record
+
+POSE = ("g1", "g1_cos", "g2", "g2_cos")
+"""Weight of an arm whose zeros are anywhere: columns of `modulated`."""
 
 
 def by_differences(recording: Recording, names: Sequence[str] = RIGID + FRICTION) -> Equations:
@@ -98,7 +101,7 @@ def by_modulation(
     """
     instance("recording", recording, Recording)
     known_names(names)
-    warn_of_log(recording)
+    warn_of(recording)
     begin, end = recording.span
     shortest, tiny = 12 * recording.step, 1e-6 * recording.step
     if end - begin < shortest - tiny:
@@ -118,42 +121,35 @@ def by_modulation(
     sure = where_sign_is_sure(recording, names)
     apart = samples_apart(recording)
 
-    def averaged(q) -> list[np.ndarray]:
+    def averaged(q, names=names) -> list[np.ndarray]:
         like = np.empty((*q.shape[:-2], len(later)))
-        rows = _modulated(bumps, after, five_point_velocity(q, recording.step, apart), q)
+        rows = modulated(bumps, after, five_point_velocity(q, recording.step, apart), q)
         return [regressor_columns(row, names, like) for row in rows]
 
     kept, bent = kept_bumps(sure, bumps[0]), (bumps[2], bumps[2])
     if isinstance(recording, LoggedRecording) and not set(GRAVITY) & set(names):
-        _warn_of_weight(recording, averaged(recording.q), kept, bumps[0], later)
+        torques = np.moveaxis(recording.tau, -1, 0) @ later.T
+        _warn_of_weight(names, lambda every: averaged(recording.q, every), torques, kept)
     return independent_equations(recording, names, averaged, sure, kept, bent, later, acting[1])
 
 
-def _warn_of_weight(recording, rows, kept, bump, later) -> None:
-    """Warn if torques that only the pose explains are more than half of what `rows` leave over.
+def _warn_of_weight(names, columns, torques, kept) -> None:
+    """Warn if torques that only the pose explains are more than half of what `names` leave over.
 
     Each joint has an offset in any case.
     """
-    q1, both, none = recording.q[..., 0], recording.q.sum(-1), np.zeros(recording.q.shape[:-1])
-    shared = np.sin(both), np.cos(both)
-    poses = np.stack([[np.sin(q1), np.cos(q1), *shared], [none, none, *shared]]) @ bump.T
-    torque = np.moveaxis(recording.tau, -1, 0) @ later.T
-    size = np.array([y[keep].std() for y, keep in zip(torque, kept)])
-    if not (size > 0).all():
+    size = [tau[keep].std() for tau, keep in zip(torques, kept)]
+    if not min(size) > 0:
         return
-    y = np.concatenate([(x[keep] - x[keep].mean()) / s for x, keep, s in zip(torque, kept, size)])
-    columns = np.concatenate([a[keep] / s for a, keep, s in zip(rows, kept, size)])
-    pose = np.concatenate([
-        np.moveaxis(x, 0, -1)[keep] / s for x, keep, s in zip(poses, kept, size)
-    ])  # fmt: skip
+    y = np.concatenate([tau[keep] / s for tau, keep, s in zip(torques, kept, size)])
     joint = np.repeat([0, 1], [keep.sum() for keep in kept])
-    columns = np.hstack([columns, joint[:, None] == [0, 1]])
     left = []
-    for a in (columns, np.hstack([columns, pose])):
+    for more in (OFFSETS, OFFSETS + POSE):
+        rows = columns((*names, *more))
+        a = np.concatenate([x[keep] / s for x, keep, s in zip(rows, kept, size)])
         residual = y - a @ np.linalg.lstsq(a, y, rcond=1e-7)[0]
-        left.append(np.bincount(joint, residual**2) / max(y.size - a.shape[1], 1))
-    share = (left[0] - left[1]) / np.bincount(joint, y**2) * y.size
-    heavy = [JOINTS[j] for j in range(2) if left[1][j] < 0.5 * left[0][j] and share[j] > 0.002]
+        left.append(np.bincount(joint, residual**2) / np.bincount(joint))
+    heavy = [JOINTS[j] for j in range(2) if left[1][j] < min(0.5 * left[0][j], left[0][j] - 0.002)]
     if heavy:
         warnings.warn(
             "torques that depend on the pose are most of what would be left over at the "
@@ -213,32 +209,40 @@ def _sampled(recording: Recording, velocity, acceleration, names, margin) -> Equ
     return Equations(tuple(names), regressors, torques, biased=BY_SAMPLE, notes=notes)
 
 
-def _modulated(bumps, after, velocity, q) -> list[dict]:
+def modulated(bumps, after, velocity, q) -> list[dict]:
     """What each parameter contributes to the modulated torque, for shoulder and elbow.
 
-    The means of the bumps from each sample to the next are `after`.
+    The means of the bumps from each sample to the next are `after`. If the elbow's zero is off by
+    an angle, `b` and `b_sin` are the coupling times its cosine and sine; likewise `g1`, `g1_cos`
+    and `g2`, `g2_cos` for angles that are not counted from the vertical.
     """
     w, w1, w2 = (x.T for x in bumps)
     sign = mean_sign(velocity)
     q1, q2, v1, v2 = q[..., 0], q[..., 1], velocity[..., 0], velocity[..., 1]
     c2, s2 = np.cos(q2), np.sin(q2)
-    weight = np.sin(q1 + q2) @ w
+    weight, across = np.sin(q1 + q2) @ w, np.cos(q1 + q2) @ w
+    ones = np.broadcast_to(w.sum(0), weight.shape)
     shoulder = {
         "a": q1 @ w2,
         "b": s2 @ w2 - (2 * c2 * v1) @ w1,
+        "b_sin": c2 @ w2 + (2 * s2 * v1) @ w1,
         "d": q2 @ w2,
         "g1": np.sin(q1) @ w,
         "g2": weight,
+        "g1_cos": np.cos(q1) @ w,
+        "g2_cos": across,
         "F_v1": -q1 @ w1,
         "F_c1": sign[..., 0] @ after.T,
-        "offset1": np.ones_like(q1) @ w,
+        "offset1": ones,
     }
     elbow = {
         "b": (s2 * v1 * (v1 + v2)) @ w - (c2 * v1) @ w1,
+        "b_sin": (c2 * v1 * (v1 + v2)) @ w + (s2 * v1) @ w1,
         "d": (q1 + q2) @ w2,
         "g2": weight,
+        "g2_cos": across,
         "F_v2": -q2 @ w1,
         "F_c2": sign[..., 1] @ after.T,
-        "offset2": np.ones_like(q2) @ w,
+        "offset2": ones,
     }
     return [shoulder, elbow]

@@ -20,7 +20,7 @@ RIGID = ("a", "b", "d")  #: Base parameters of a horizontal two-link arm, kg m^2
 GRAVITY = ("g1", "g2")  #: Gravity moments of a vertical arm, N m.
 #: Viscous (N m s/rad) and Coulomb (N m) friction of shoulder and elbow.
 FRICTION = ("F_v1", "F_v2", "F_c1", "F_c2")
-OFFSETS = ("offset1", "offset2")  #: What a logged torque of shoulder and elbow is always off, N m.
+OFFSETS = ("offset1", "offset2")  #: Constant torques that are logged, but do not act, N m.
 SLOW = 0.1  #: Below this speed (rad/s) the sign of a joint's friction is not trusted.
 SIGN_SPEED = 0.005  #: Below this estimated speed (rad/s) the sign of a velocity is blurred.
 
@@ -156,6 +156,14 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
     for a, y in zip(equations.regressor, equations.torque):
         finite_array("equations.regressor", a, len(equations.names))
         finite_array("equations.torque", y)
+    estimate = estimated(equations, rounds)
+    for note in _impossible(estimate):
+        warnings.warn(note, ImpossibleArm, stacklevel=2)
+    return estimate
+
+
+def estimated(equations: Equations, rounds: int = 4) -> Estimate:
+    """`least_squares` of equations that were checked, without a warning."""
     names, equation_count = equations.names, sum(y.shape[-1] for y in equations.torque)
     if equation_count <= len(names):
         slow = not equation_count and any(name.startswith("F_c") for name in names)
@@ -171,10 +179,7 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
     if not unseen.shape[1]:
         estimate = _solved(names, regressors, torques, rounds)
         unsure = _biased(equations, estimate, np.eye(len(names)))
-        impossible = _impossible(estimate)
-        for note in impossible:
-            warnings.warn(note, ImpossibleArm, stacklevel=2)
-        notes = (*notes, *impossible, *_alike(equations, regressors, estimate))
+        notes = (*notes, *_impossible(estimate), *_alike(equations, regressors, estimate))
         return replace(estimate, unsure=unsure, notes=notes)
     if unseen.shape[1] == len(names):
         raise ValueError(f"equations must determine some of {', '.join(names)}; they do not")
@@ -447,8 +452,10 @@ def true_parameters(arm: Arm, effects: Effects, names: Sequence[str]) -> np.ndar
     )
     coulomb = sum(np.asarray(f.level) for f in effects.friction if isinstance(f, CoulombFriction))
     pairs = (*arm.gravity_moments, *np.broadcast_to(viscous, 2), *np.broadcast_to(coulomb, 2))
-    known = dict(zip((*RIGID, *GRAVITY, *FRICTION), (arm.a, arm.b, arm.d, *pairs)))
-    return np.array([known.get(name, 0.0) for name in names])
+    known = dict(
+        zip((*RIGID, *GRAVITY, *FRICTION, *OFFSETS), (arm.a, arm.b, arm.d, *pairs, 0.0, 0.0))
+    )
+    return np.array([known[name] for name in names])
 
 
 def excitation(trajectory: Trajectory, names: Sequence[str] = RIGID, noise: float = 0.0) -> float:

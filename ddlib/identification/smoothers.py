@@ -27,7 +27,7 @@ from ddlib.identification.averaging import (
 )
 from ddlib.identification.regression import FRICTION, RIGID, Equations, from_states, known_names
 from ddlib.identification.whitening import independent_equations
-from ddlib.logs.checking import warn_of_log
+from ddlib.logs import warn_of
 from ddlib.simulation import Recording
 
 _SMOOTHEST, _ROUGHEST = 1e-12, 1e4  # shares of process in encoder noise; rounding allows no less
@@ -202,7 +202,7 @@ def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
     What makes derivatives of angles is `again`.
     """
     orders = again(recording.q)
-    warn_of_log(recording)
+    warn_of(recording)
     acting = acting_time(recording, hold)
     steady = where_sign_is_sure(with_runs(recording if rows is None else rows), names)
     if steady.shape[-1] != recording.t.size:

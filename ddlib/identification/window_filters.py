@@ -11,7 +11,7 @@ from scipy.signal import savgol_coeffs
 
 from ddlib._check import integer, number, one_of, series, shaped
 from ddlib.identification.regression import Estimate, from_states, known_names
-from ddlib.logs.checking import warn_of_log
+from ddlib.logs import warn_of
 from ddlib.simulation import Recording
 
 _QUANTITIES = ("position", "velocity", "acceleration")
@@ -118,7 +118,7 @@ class FilteredEquations:
         if isinstance(runs, Recording):
             if abs(runs.step / self.step - 1) > 1e-6:
                 raise ValueError(f"runs must have a step of {self.step:g} s, got {runs.step:g} s")
-            warn_of_log(runs)
+            warn_of(runs)
             runs = runs.for_windows(self.width)
             begin, end = runs.motion.start - half, runs.motion.stop + half
             if begin < 0 or end > runs.t.size:

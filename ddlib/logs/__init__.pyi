@@ -1,8 +1,3 @@
-from .checking import (
-    DoubtfulRecording as DoubtfulRecording,
-    check_recording as check_recording,
-    warn_of as warn_of,
-)
 from .findings import (
     Check as Check,
     Finding as Finding,
@@ -14,8 +9,13 @@ from .log import (
 )
 from .reading import (
     read_csv as read_csv,
+    read_frame as read_frame,
     read_log as read_log,
     write_csv as write_csv,
+)
+from .readings import (
+    DoubtfulRecording as DoubtfulRecording,
+    warn_of as warn_of,
 )
 from .resampling import (
     LogWarning as LogWarning,

@@ -18,7 +18,8 @@ class LoggedRun:
     t: np.ndarray  #: Times (samples,), s, in the order of the file.
     q: np.ndarray  #: Angles (samples, 2), rad; the second is counted from the upper arm.
     tau: np.ndarray  #: Torques (samples, 2), N m.
-    lines: np.ndarray  #: Line of the file that each sample stands in, (samples,).
+    lines: np.ndarray  #: Line of the file, or row of the frame, of each sample, (samples,).
+    joints: int = 2  #: For how many joints the file has such columns; two of them were picked.
 
     def __repr__(self):
         ends = f", {self.t[0]:g} to {self.t[-1]:g} s" if len(self.t) else ""
@@ -50,6 +51,7 @@ class LoggedRecording(Recording):
     lines: np.ndarray | None = None  #: Nearest line of the file for each sample, (runs, time).
     notes: tuple[str, ...] = ()  #: Sentences: what reading and resampling changed.
     margin: int = 0  #: Samples at each end that windows need and that are no cases.
+    joints: int = 2  #: For how many joints the file has such columns; two of them were picked.
 
     def __repr__(self):
         return _with_notes("Logged" + super().__repr__(), self.notes)

@@ -1,26 +1,35 @@
-"""Logs of a reader's own arm, from text files of any layout, and recordings to such a file."""
+"""Logs of a reader's own arm, from files, frames and arrays, and recordings to a file."""
 
 from __future__ import annotations
 
+import gzip
 import os
-import tempfile
-import warnings
+import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
-from ddlib._check import number
-from ddlib.logs import _text_files as text_files, _units as known_units
-from ddlib.logs._text_files import Table, fault, listed, shown
+from ddlib._check import finite_array, flag, instance, integer, number, one_of, series, text, told
+from ddlib._files import write_whole
+from ddlib.logs._text import Table, fault, read_text, shortened
+from ddlib.logs._units import (
+    check_precision,
+    guessed_unit,
+    in_head,
+    in_si,
+    since_1970,
+    size_of,
+    spelled,
+)
 from ddlib.logs.log import Log, LoggedRecording, LoggedRun
-from ddlib.logs.resampling import LogWarning, resampled
+from ddlib.logs.resampling import on_one_grid
 from ddlib.simulation import Recording
+from ddlib.tables import plural
 
-_ANGLES, _TORQUES = ("q1", "q2"), ("tau1", "tau2")
-_MEASURED = (*_ANGLES, *_TORQUES)
-_MAY_LACK = ("q2", *_TORQUES)  # 0 throughout, as in the log of a single joint
-_QUANTITIES = ("time", *_MEASURED, "run")
+_JOINTS = {"q": ("q1", "q2"), "tau": ("tau1", "tau2")}
+_MEASURED = ("q1", "q2", "tau1", "tau2")
+_QUANTITIES = ("time", *_MEASURED)
+_TURNS = 4 * np.pi  # rad: no joint of an arm goes further without a word
 
 
 def read_log(
@@ -39,8 +48,9 @@ def read_log(
 ) -> Log:
     """Read times, angles and torques of a two-link arm from text files, as they were logged.
 
-    Separator, decimal sign, encoding and packing (gzip, bz2, xz) are found, unless you give them.
-    Lines that are empty or begin with ``#`` or ``%`` are passed over.
+    Separator, decimal sign, encoding, packing (gzip, bz2, xz), lines above the heads and units
+    below them are found. Lines that are empty or begin with ``#`` or ``%`` are passed over, unless
+    the heads stand there.
 
     Parameters
     ----------
@@ -52,14 +62,15 @@ def read_log(
         from 0. None is for a joint without torque, ``{"tau2": None}``, and for one that is locked,
         as in a log of a single joint: ``{"q2": None, "tau2": None}``.
     units : mapping, optional
-        Units of columns that are not in s, rad, N m: ``{"time": "ms", "q1": "deg", "q2": "deg"}``.
-        Known are s, ms, us, ns; rad, mrad, deg, rev; Nm, mNm, Ncm, kNm; A, mA; and a number is
-        what one unit is in SI units, like ``2 * pi / 4096`` for counts of an encoder. Without it
-        the head's own counts, as in "q1 [deg]", "time_ms", "tau1/Nm".
+        Units of columns that are not in s, rad, N m: ``{"time": "ms", "q1": "deg", "q2": "deg"}``;
+        "q" and "tau" stand for both joints. Known are s, ms, us, ns; rad, mrad, deg, rev; Nm, mNm,
+        Ncm, kNm; A, mA; and a number is what one unit is in SI units, like ``2 * pi / 4096`` for
+        counts of an encoder. Without it the head's own counts, as in "q1 [deg]", "time_ms",
+        "tau1/Nm".
     factors : mapping, optional
         What to multiply angles and torques by, like N m/A for currents, with a sign.
     rate : float, optional
-        Samples in a second, Hz, for files without a time.
+        Lines in a second, Hz, for files without a time.
     run : str or int, optional
         Column that tells runs of a file apart; default: "run", if there is one.
     separator, decimal, encoding : str, optional
@@ -85,21 +96,51 @@ def read_log(
     OSError
         If a file cannot be read.
     """
-    _check_layout(separator, decimal, encoding)
-    wanted = _wanted(columns, rate, run)
-    units, factors = _by_column("units", units), _by_column("factors", factors)
-    if rate is not None:
-        rate = number("rate", rate, 0.0, open_low=True)
-    for name in (n for n in ("time", "run") if n in factors):
-        raise ValueError(f"factors must be for {', '.join(_MEASURED)}, got one for {name}")
-    runs, notes = [], []
-    for path in text_files.as_paths(paths):
-        text = text_files.read_text(path, encoding)
-        table = text_files.split(path, text, separator, decimal, skip_bad)
-        reader = _Reader(table, wanted, units, factors, skip_bad)
-        runs += reader.runs(rate, absolute_elbow)
-        notes += [f"{shown(path, 100)}: {note}" for note in reader.notes]
-    return Log(tuple(runs), tuple(notes))
+    for name, value in {"separator": separator, "decimal": decimal, "encoding": encoding}.items():
+        if value is not None:
+            text(name, value)
+    if separator not in (None, r"\s+") and (len(separator) != 1 or separator in '"\n'):
+        raise ValueError(f"separator must be one character, like ';', got {told(separator)}")
+    one_of("decimal", decimal, (None, ".", ","))
+    tables = (read_text(path, separator, decimal, encoding, skip_bad) for path in _as_paths(paths))
+    return _log(tables, columns, units, factors, rate, run, absolute_elbow, skip_bad)
+
+
+def read_frame(
+    frame,
+    columns: Mapping | None = None,
+    units: Mapping | None = None,
+    factors: Mapping | None = None,
+    *,
+    rate: float | None = None,
+    run: str | int | None = None,
+    absolute_elbow: bool = False,
+    skip_bad: bool = False,
+) -> Log:
+    """Take times, angles and torques from a frame of pandas or from arrays, as `read_log` does.
+
+    Parameters
+    ----------
+    frame : pandas.DataFrame or mapping
+        Columns by their names, or arrays (samples,) by theirs. An array (samples, joint) stands for
+        a column for each joint: that of "q" for "q1", "q2" and so on. Masked samples are bad ones.
+    columns, units, factors, rate, run, absolute_elbow, skip_bad
+        Those of `read_log`, with rows for lines.
+
+    Returns
+    -------
+    Log
+        As of `read_log`; `lines` are rows of the frame, counted from 0.
+
+    Raises
+    ------
+    TypeError
+        If `frame` is neither a frame nor a mapping.
+    ValueError
+        In one line with row and column, as `read_log`.
+    """
+    tables = [Table("frame", _as_frame(frame), "frame", "row")]
+    return _log(tables, columns, units, factors, rate, run, absolute_elbow, skip_bad)
 
 
 def read_csv(
@@ -130,10 +171,7 @@ def read_csv(
         what was done.
     """
     log = read_log(paths, columns, units, factors, **options)
-    recording, notes = resampled(log, step, longest_gap, seconds, trust_stamps)
-    if notes:
-        warnings.warn(notes, LogWarning, stacklevel=2)
-    return recording
+    return on_one_grid(log, step, longest_gap, seconds, trust_stamps)
 
 
 def write_csv(path, recording: Recording) -> None:
@@ -151,396 +189,277 @@ def write_csv(path, recording: Recording) -> None:
     """
     import pandas
 
-    (path,) = text_files.as_paths(path)
-    if not isinstance(recording, Recording) or recording.q.ndim not in (2, 3):
-        got = recording.q.shape if isinstance(recording, Recording) else type(recording).__name__
-        raise TypeError(f"recording must be a Recording of one run or several, got {got}")
-    q, tau = (x.reshape(-1, *recording.q.shape[-2:]) for x in (recording.q, recording.tau))
-    for name, values in (("q", q), ("tau", tau)):
-        if not np.isfinite(values).all():
-            raise ValueError(f"recording must have finite angles and torques, got NaN in {name}")
-    runs, samples, _ = q.shape
-    frame = {"run": np.repeat(np.arange(1, runs + 1), samples), "time": np.tile(recording.t, runs)}
-    frame |= {name: q[..., k].ravel() for k, name in enumerate(_ANGLES)}
-    frame |= {name: tau[..., k].ravel() for k, name in enumerate(_TORQUES)}
-    folder, name = os.path.split(os.path.abspath(path))
-    with tempfile.TemporaryDirectory(dir=folder) as beside:
-        whole = os.path.join(beside, name)
-        pandas.DataFrame(frame).to_csv(whole, index=False, lineterminator="\n")
-        os.replace(whole, path)
+    instance("recording", recording, Recording)
+    (path,) = _as_paths(path)
+    q, tau = (finite_array(f"recording.{n}", getattr(recording, n), 2) for n in ("q", "tau"))
+    runs, samples = q.size // (2 * len(recording.t)), len(recording.t)
+    columns = {"run": np.repeat(np.arange(1, runs + 1), samples)}
+    columns |= {"time": np.tile(recording.t, runs), "q1": q[..., 0], "q2": q[..., 1]}
+    columns |= {"tau1": tau[..., 0], "tau2": tau[..., 1]}
+    frame = pandas.DataFrame({name: values.ravel() for name, values in columns.items()})
+    content = frame.to_csv(index=False, lineterminator="\n").encode()
+    write_whole(path, gzip.compress(content, mtime=0) if path.endswith(".gz") else content)
 
 
-def _wanted(columns, rate, run) -> dict:
-    """The head or place of each quantity: as given, else its own name."""
-    columns = _mapping("columns", columns)
-    for name in columns:
-        if name not in _QUANTITIES:
-            raise fault(
-                f"columns must name {', '.join(_QUANTITIES)}, got {shown(repr(name))}; "
-                f'write {{"q1": "its head in the file"}}'
-            )
-    for name, head in columns.items():
-        is_place = isinstance(head, (int, np.integer)) and not isinstance(head, bool)
-        if not (isinstance(head, str) or is_place or (head is None and name in _MAY_LACK)):
-            raise fault(
-                f"columns: {name} must be a head of the file or a place, got {shown(repr(head))}"
-            )
-    if run is not None:
-        columns["run"] = run
-    own = {name: name for name in _QUANTITIES if name != "run"}
-    wanted = own | columns
-    if rate is not None:
-        del wanted["time"]
-    return wanted
+def _as_paths(paths) -> list[str]:
+    """One path or several as a list of text."""
+    if isinstance(paths, (str, os.PathLike)):
+        paths = [paths]
+    paths = [os.fspath(path) for path in series("paths", paths, str, os.PathLike)]
+    if not paths:
+        raise ValueError("paths must name one file or more, got none")
+    return paths
 
 
-def _mapping(name: str, given) -> dict:
-    if given is not None and not isinstance(given, Mapping):
-        example = {"columns": "its head", "units": "deg", "factors": 0.7}[name]
-        raise fault(
-            f"{name} must be a dictionary, like {{'q1': {example!r}}}, got {shown(repr(given))}",
-            TypeError,
-        )
-    return dict(given or {})
-
-
-def _check_layout(separator, decimal, encoding) -> None:
-    """Refuse what no file can have."""
-    for name, value in {"separator": separator, "decimal": decimal, "encoding": encoding}.items():
-        if not isinstance(value, str | None):
-            raise TypeError(f"{name} must be text, got {shown(repr(value))}")
-    if separator not in (None, r"\s+") and (len(separator) != 1 or separator in '"\n'):
-        raise fault(f"separator must be one character, like ';', got {shown(repr(separator))}")
-    if decimal not in (None, ".", ","):
-        raise fault(f"decimal must be '.' or ',', got {shown(repr(decimal))}")
-
-
-def _by_column(name: str, given) -> dict:
+def _by_quantity(argument: str, given, known) -> dict:
     """A mapping by quantity; "q" and "tau" stand for both joints."""
+    if given is not None and not isinstance(given, Mapping):
+        raise TypeError(f"{argument} must be a mapping, like {{'q1': ...}}, got {told(given)}")
     by_quantity = {}
-    for key, value in _mapping(name, given).items():
-        both = {"q": _ANGLES, "tau": _TORQUES}.get(key, (key,))
-        for quantity in both:
-            if quantity not in _QUANTITIES[:-1]:
-                known = ", ".join((*_QUANTITIES[:-1], "q", "tau"))
-                raise fault(f"{name} must be for {known}, got {shown(repr(key))}")
-            by_quantity[quantity] = value
+    for key, value in (given or {}).items():
+        for name in _JOINTS.get(key, (key,)):
+            one_of(f"names in {argument}", name, known)
+            by_quantity[name] = value
     return by_quantity
 
 
-@dataclass
-class _Reader:
-    """What one file says of each quantity."""
-
-    table: Table
-    wanted: dict
-    units: dict
-    factors: dict
-    skip_bad: bool
-
-    def __post_init__(self):
-        self.notes: list[str] = []
-        self.name = shown(self.table.path, 100)
-        self.places, self.head_units = self._found()
-        if not self.table.lines:
-            raise fault(f"{self.name}: no samples below the heads")
-        self.cells = text_files.columns(self.table, list(self.places.values()))
-        self.rows = np.arange(len(self.table.lines))
-        if self.table.above:
-            self.notes.append(f"{_lines(self.table.above)} above the heads passed over.")
-        if self.table.left_out:
-            what = "a wrong count of cells"
-            self.notes.append(f"{_lines(self.table.left_out)} with {what} left out.")
-
-    def runs(self, rate, absolute_elbow) -> list[LoggedRun]:
-        """The runs of the file, in the order of their first lines."""
-        time = None if rate is not None else self._numbers("time")
-        measured = {n: self._numbers(n) for n in _MEASURED if n in self.places}
-        keep = np.ones(len(self.rows), bool)
-        for values in (measured if time is None else {"time": time} | measured).values():
-            keep &= np.isfinite(values) if values.dtype.kind == "f" else True
-        if not keep.all():
-            self.notes.append(f"{_lines((~keep).sum())} with a cell that is no number left out.")
-        if not keep.any():
-            raise fault(f"{self.name}: no line has finite numbers in all columns")
-        self.rows = self.rows[keep]
-        measured = {name: values[keep] for name, values in measured.items()}
-        names = self.cells[self.places["run"]][self.rows] if "run" in self.places else None
-        members = {self.table.path: np.arange(len(self.rows))}
-        if names is not None:
-            members = {}
-            order, which = np.unique(names.astype(str), return_inverse=True)
-            for k in np.argsort([np.argmax(which == j) for j in range(len(order))]):
-                members[f"{self.table.path}, run {order[k]}"] = np.flatnonzero(which == k)
-        if time is None:
-            times = {name: np.arange(len(rows)) / rate for name, rows in members.items()}
-        else:
-            members, times = self._times(time[keep], members)
-        lines = self.table.numbers[self.rows]
-        q, tau = self._angles(measured, lines, absolute_elbow), self._torques(measured)
-        return [
-            LoggedRun(name, times[name], q[rows], tau[rows], lines[rows])
-            for name, rows in members.items()
-        ]
-
-    def _found(self) -> tuple[dict[str, int], dict[str, str]]:
-        """Places of the columns that are read, and the units in their heads."""
-        heads, wanted = self.table.heads, dict(self.wanted)
-        wanted.setdefault("run", None)
-        places, units, missing = {}, {}, []
-        for name, head in wanted.items():
-            if isinstance(head, (int, np.integer)):
-                count = len(heads) or len(self.table.lines[0].split(self.table.separator))
-                if not 0 <= head < count:
-                    raise fault(
-                        f"columns: {name} must be a place from 0 to {count - 1}, got {head}"
-                    )
-                places[name] = int(head)
-                if heads and name != "run":
-                    units[name] = known_units.in_head(heads[head], name)[1]
-            elif head is not None or name == "run":
-                place = self._place(name, "run" if head is None else head)
-                if place is None and (name != "run" or head is not None):
-                    missing.append(head)
-                elif place is not None:
-                    places[name] = place
-                    if name != "run" and heads[place] != head:
-                        units[name] = known_units.in_head(heads[place], name)[1]
-                    elif name != "run":  # named in full by its head: brackets need be no unit
-                        unit = known_units.in_head(heads[place], name)[1]
-                        units[name] = unit if _is_known(name, unit) else None
-            else:
-                self.notes.append(f"{name} is taken to be 0 throughout, as columns says.")
-        if missing and not heads and len(text_files.cells(self.table, 0)) == 1:
-            raise fault(
-                f"{self.name}: one number on a line; a log must have a line for each time, and on "
-                f"it a column for each quantity"
-            )
-        if missing and not heads:
-            raise fault(
-                f"{self.name}, line {self.table.head_line}: numbers, and no heads above them; give "
-                f'columns by their places, counted from 0, like columns={{"time": 0, "q1": 1}}'
-            )
-        if missing:
-            rate = ", or give rate=, in Hz" if missing == ["time"] else ""
-            raise fault(
-                f"{self.name}, line {self.table.head_line}: no column {listed(missing, 60)} in "
-                f"{listed(heads, 90)}; name what it is called by columns={{...}}{rate}"
-            )
-        seen = {}
-        for name, place in places.items():
-            if place in seen:
-                apart = seen[place][0] == "q" and name.startswith("tau")
-                raise fault(
-                    f"columns: {seen[place]} and {name} must differ, got one head for both"
-                    f"{'; join files of angles and of torques by pandas.merge' if apart else ''}"
-                )
-            seen[place] = name
-        return places, {name: unit for name, unit in units.items() if unit is not None}
-
-    def _place(self, name: str, head: str) -> int | None:
-        """Where a head stands; a ValueError if it stands in two places."""
-        heads = self.table.heads
-        head = " ".join(head.split())
-        without = heads if name == "run" else [known_units.in_head(x, name)[0] for x in heads]
-        small = [[x.lower() for x in names] for names in (heads, without)]
-        for names, sought in ((heads, head), (without, head), *((x, head.lower()) for x in small)):
-            places = [k for k, x in enumerate(names) if x == sought]
-            if len(places) > 1:
-                raise fault(
-                    f"{self.name}, line {self.table.head_line}: column {shown(head)} is there "
-                    f"{len(places)} times, at places {listed(places)}, counted from 0; choose by "
-                    f'columns={{"{name}": {places[0]}}}'
-                )
-            if places:
-                return places[0]
-        return None
-
-    def _numbers(self, name: str) -> np.ndarray:
-        """A column as finite numbers; a ValueError names the first line that has another cell."""
-        values = self.cells[self.places[name]]
-        if values.dtype.kind == "O":
-            import pandas
-
-            found = pandas.to_numeric(pandas.Series(values), errors="coerce").to_numpy(float)
-            if name == "time" and np.isnan(found).mean() > 0.5:
-                dates = _dates(values)
-                if dates is not None:
-                    self.units = self.units | {"time": "ns"}
-                    self.notes.append("time holds dates; it is counted from the first of them.")
-                    return dates
-            values = found
-        bad = ~np.isfinite(values) if values.dtype.kind == "f" else np.zeros(len(values), bool)
-        if bad.any() and not self.skip_bad:
-            k, place = int(np.argmax(bad)), self.places[name]
-            head = self.table.heads[place] if self.table.heads else f"{place} ({name})"
-            text = shown(text_files.cell(self.table, k, place), 40)
-            raise fault(
-                f"{self.name}, line {self.table.numbers[k]}, column {shown(head)}: must be a "
-                f"finite number, got {text!r}; skip_bad=True leaves such lines out"
-            )
-        return values
-
-    def _unit(self, name: str):
-        """The unit that was given or stands in the head, and which of these it is."""
-        if name in self.units:
-            return self.units[name], "given"
-        return self.head_units.get(name), "head"
-
-    def _size(self, name: str) -> tuple[float, str] | None:
-        """A quantity's unit in SI units, and its kind; None if nothing tells it."""
-        unit, source = self._unit(name)
-        if unit is None:
-            return None
-        try:
-            size, kind = known_units.factor(name, unit)
-        except ValueError as error:
-            if source == "given":
-                raise
-            place = f"{self.name}, line {self.table.head_line}"
-            head = shown(self.table.heads[self.places[name]])
-            raise fault(f"{place}: column {head}: {error}; say which by units=") from None
-        is_date = name == "time" and self.cells[self.places[name]].dtype.kind == "O"
-        if size != 1.0 and not is_date:
-            how = "as its head says" if source == "head" else "as units says"
-            written = unit if isinstance(unit, str) else f"units of {unit:g}"
-            to = {"time": "s", "angle": "rad", "torque": "N m", "current": "A"}[kind]
-            self.notes.append(f"{name} converted from {written} to {to}, {how}.")
-        return size, kind
-
-    def _times(self, time, members) -> tuple[dict, dict]:
-        """Lines and times in s of each run."""
-        members = self._parted(time, members)
-        if self.skip_bad:
-            members = self._forward(time, members)
-        steps = np.concatenate([np.diff(time[rows]) for rows in members.values()])
-        told = self._size("time")
-        if told is None:
-            place = (
-                f"{self.name}, column {shown(self.table.heads[self.places['time']])}"
-                if (self.table.heads)
-                else f"{self.name}, column {self.places['time']}"
-            )
-            unit, since_1970 = known_units.unit_of_times(time, steps, place)
-            size = known_units.factor("time", unit)[0]
-            if unit != "s":
-                self.notes.append(
-                    f"time is in {known_units.word(unit)}, as its numbers leave no doubt; "
-                    f"converted to s."
-                )
-        else:
-            size = told[0]
-            since_1970 = 6e8 <= abs(float(time[0])) * size <= 4.2e9
-        if since_1970:
-            time = time - time[0]  # whole numbers stay exact
-        if since_1970 and self.cells[self.places["time"]].dtype.kind != "O":
-            self.notes.append("time counts from 1970; the file's first time was subtracted.")
-        time = known_units.converted(np.asarray(time, float), size)
-        return members, {name: time[rows] for name, rows in members.items()}
-
-    def _parted(self, time, members) -> dict:
-        """Runs parted where their time begins again."""
-        parted = {}
-        for name, rows in members.items():
-            t, parts, start = time[rows], [], 0
-            for k in np.flatnonzero(np.diff(t) < 0) + 1:
-                if t[k] <= t[start] + 0.1 * (t[k - 1] - t[start]) and k - start >= 3:
-                    parts.append(rows[start:k])
-                    start = k
-            if not parts:
-                parted[name] = rows
-                continue
-            parts.append(rows[start:])
-            first = self.table.numbers[self.rows[parts[1][0]]]
-            self.notes.append(
-                f"time begins again at {len(parts) - 1} places, the first at line {first}; a run "
-                f"begins there."
-            )
-            joined = ", part" if ", run " in name else ", run"
-            parted |= {f"{name}{joined} {k + 1}": part for k, part in enumerate(parts)}
-        return parted
-
-    def _forward(self, time, members) -> dict:
-        """Each run's lines whose time is later than all before."""
-        kept, left_out = {}, 0
-        for name, rows in members.items():
-            t = time[rows]
-            fine = np.r_[True, t[1:] > np.maximum.accumulate(t)[:-1]]
-            if fine.mean() < 0.5:
-                raise fault(
-                    f"{shown(name, 120)}: time does not grow at {(~fine).sum()} of {len(t)} lines; "
-                    f"is it the time? If runs follow each other, name their column by run="
-                )
-            kept[name], left_out = rows[fine], left_out + int((~fine).sum())
-        if left_out:
-            self.notes.append(f"{_lines(left_out)} not later than the line before left out.")
-        return kept
-
-    def _angles(self, measured, lines, absolute_elbow) -> np.ndarray:
-        angles = []
-        for name in _ANGLES:
-            if name not in measured:
-                angles.append(np.zeros(len(self.rows)))
-                continue
-            values, kind = self._in_si(name, measured)
-            if kind is None and name not in self.factors:
-                known_units.check_angle(values, self.name, name, lines)
-            angles.append(self._scaled(name, values))
-        if absolute_elbow:
-            angles[1] = angles[1] - angles[0]
-            self.notes.append("q2 was absolute; q1 was subtracted from it.")
-        return np.stack(angles, -1)
-
-    def _torques(self, measured) -> np.ndarray:
-        torques = []
-        for name in _TORQUES:
-            if name not in measured:
-                torques.append(np.zeros(len(self.rows)))
-                continue
-            values, kind = self._in_si(name, measured)
-            if kind == "current" and name not in self.factors:
-                raise fault(
-                    f"{self.name}: {name} is a current, in {self._unit(name)[0]}; give its "
-                    f'torque for an ampere, like factors={{"{name}": 0.7}} (N m/A)'
-                )
-            torques.append(self._scaled(name, values))
-        return np.stack(torques, -1)
-
-    def _in_si(self, name, measured) -> tuple[np.ndarray, str | None]:
-        """A column in SI units, and the kind of its unit; None if nothing tells the unit."""
-        unit, values = self._size(name), np.asarray(measured[name], float)
-        return (values, None) if unit is None else (known_units.converted(values, unit[0]), unit[1])
-
-    def _scaled(self, name, values) -> np.ndarray:
-        if name not in self.factors:
-            return values
-        scale = number(f"factors of {name}", self.factors[name])
-        if scale == 0:
-            raise ValueError(f"factors of {name} must not be 0, got {scale:g}")
-        self.notes.append(f"{name} multiplied by {scale:g}, as factors says.")
-        return values * scale
-
-
-def _is_known(quantity: str, unit: str | None) -> bool:
-    try:
-        known_units.factor(quantity, unit)
-    except (TypeError, ValueError):
-        return False
-    return True
-
-
-def _lines(count) -> str:
-    return f"{count} line{'s' if count > 1 else ''}"
-
-
-def _dates(texts) -> np.ndarray | None:
-    """Dates with times of day as ns since 1970; None if they are none."""
+def _as_frame(frame):
+    """A frame or arrays by name as a frame with a column for each joint."""
     import pandas
 
+    if not isinstance(frame, (pandas.DataFrame, Mapping)):
+        raise TypeError(f"frame must be a DataFrame or a mapping of arrays, got {told(frame)}")
+    parts = []
+    for head, values in frame.items():
+        if isinstance(values, pandas.Series) and isinstance(next(iter(values), None), list):
+            values = values.to_list()  # as in records of JSON
+        if np.ndim(values) in (1, 2) and np.size(values):
+            part = pandas.DataFrame(values).reset_index(drop=True)
+            part = part.T if len(part) == 1 else part  # a row of MATLAB
+            joints = range(1, part.shape[1] + 1)
+            part.columns = [f"{head}{k}" if len(joints) > 1 else str(head) for k in joints]
+            parts.append(part)
+    if len({len(part) for part in parts}) != 1:
+        got = ", ".join(f"{part.columns[0]} {len(part)}" for part in parts) or "none"
+        raise fault(
+            f"frame must hold arrays (samples,) or (samples, joint) of one length, got {got}"
+        )
+    return pandas.concat(parts, axis=1)
+
+
+def _log(tables, columns, units, factors, rate, run, absolute_elbow, skip_bad) -> Log:
+    """The runs of tables in SI units, and what was changed."""
+    wanted = {name: name for name in _QUANTITIES}
+    wanted |= _by_quantity("columns", columns, (*_QUANTITIES, "run"))
+    if run is not None:
+        wanted["run"] = run
+    if rate is not None:
+        number("rate", rate, 0.0, open_low=True)
+        del wanted["time"]
+    units = _by_quantity("units", units, _QUANTITIES)
+    factors = _by_quantity("factors", factors, _MEASURED)
+    flag("absolute_elbow", absolute_elbow)
+    flag("skip_bad", skip_bad)
+    runs, notes = [], []
+    for table in tables:
+        places = _places(table, wanted)
+        data = table.frame.iloc[:, list(places.values())].set_axis(list(places), axis=1)
+        if rate is not None:
+            data["time"] = np.arange(len(data)) / rate
+        told_units = dict(units)
+        if (clock := _clock(data["time"])) is not None:
+            data["time"], told_units["time"] = clock, "s"
+            table.notes.append("time holds dates or times of day; it is counted from the first.")
+        data = _finite(table, data, places, skip_bad)
+        for name, place in places.items():
+            if name != "run":
+                unit, factor = told_units.get(name), factors.get(name)
+                data[name] = _in_si(table, name, place, data[name].to_numpy(), unit, factor)
+        data = data.reindex(columns=[*data.columns.union(_QUANTITIES)], fill_value=0.0)
+        if absolute_elbow:
+            data["q2"] -= data["q1"]
+            table.notes.append("q2 was absolute; q1 was subtracted from it.")
+        joints = _joints_like(table, places)
+        if joints > 2:
+            others = "these equations are of two with parallel axes, all others locked"
+            table.notes.append(f"there are {joints} such joints; {others}.")
+        runs += _runs(table, data, joints, skip_bad)
+        notes += [f"{shortened(table.path, 100)}: {note}" for note in table.notes]
+    return Log(tuple(runs), tuple(notes))
+
+
+def _places(table: Table, wanted: dict) -> dict[str, int]:
+    """Places of the columns that are read."""
+    heads = [str(head) for head in table.frame.columns]
+    if "run" not in wanted and _named(heads, "run", "run"):
+        wanted = wanted | {"run": "run"}
+    places, missing = {}, []
+    for name, head in wanted.items():
+        if head is None and name in _MEASURED[1:]:
+            table.notes.append(f"{name} is taken to be 0 throughout, as columns says.")
+            continue
+        is_place = isinstance(head, (int, np.integer))
+        found = [head] if is_place else _named(heads, name, str(head))
+        if len(found) > 1:
+            choice = f'at places {found} from 0; choose by columns={{"{name}": {found[0]}}}'
+            raise fault(
+                f"{table.where}: column {shortened(head)} is there more than once, {choice}"
+            )
+        if not found:
+            missing.append(str(head))
+        elif found[0] in places.values():
+            merged = "files of angles and of torques are joined by pandas.merge, for read_frame"
+            raise fault(f"columns: {name} must have a column of its own, got {head!r}; {merged}")
+        else:
+            last = len(heads) - 1
+            places[name] = integer(f"columns: the place of {name}", found[0], 0, last)
+    if missing and heads == [str(k) for k in range(len(heads))]:
+        raise fault(
+            f"{table.where}: {len(heads)} cells, and no line of as many heads above; give columns "
+            f'by places from 0, like columns={{"time": 0}}; if commas are decimal signs, too, '
+            f"write semicolons between cells"
+        )
+    if missing:
+        sought = shortened(", ".join(missing), 60)
+        known = shortened(", ".join(filter(None, heads)), 90)
+        advice = "say what it is called by columns={...}"
+        rate = ", or give rate=, in Hz" if missing == ["time"] else ""
+        raise fault(f"{table.where}: no column {sought} in {known}; {advice}{rate}")
+    return places
+
+
+def _named(heads: list[str], quantity: str, head: str) -> list[int]:
+    """Places of columns with a head, as it stands, or else without its unit and capitals."""
+    head = " ".join(head.split())
+    exact = [place for place, known in enumerate(heads) if known == head]
+    names = [in_head(known, quantity)[0].lower() for known in heads]
+    return exact or [place for place, name in enumerate(names) if name == head.lower()]
+
+
+def _finite(table: Table, data, places: dict[str, int], skip_bad: bool):
+    """The rows of a frame in which all is a finite number."""
+    fine = np.ones(len(data), bool)
+    for name in data.columns.drop("run", errors="ignore"):
+        cells, data[name] = data[name], _numbers(data[name])
+        bad = np.flatnonzero(~np.isfinite(data[name]))
+        if bad.size and not skip_bad:
+            place = f"{shortened(table.path, 100)}, {table.row} {data.index[bad[0]]}"
+            head, cell = table.frame.columns[places[name]], shortened(cells.iloc[bad[0]])
+            raise fault(
+                f"{place}, column {shortened(head)}: must be a finite number, got {cell!r}; "
+                f"skip_bad=True leaves such {table.row}s out"
+            )
+        fine[bad] = False
+    if not fine.any():
+        raise fault(f"{table.where}: no {table.row} has finite numbers in all columns")
+    others = int((~fine).sum()) - table.misfits
+    if table.misfits:
+        table.notes.append(f"{plural(table.misfits, 'line')} of another count of cells left out.")
+    if others:
+        table.notes.append(f"{plural(others, table.row)} with a cell that is no number left out.")
+    return data[fine].copy()
+
+
+def _in_si(table: Table, name: str, place: int, values, unit, factor) -> np.ndarray:
+    """A column in s, rad or N m; a ValueError if its unit is in doubt."""
+    head = str(table.frame.columns[place])
+    where, source = f"{table.where}, column {shortened(head)}", "units says"
+    if unit is None:
+        unit, source = in_head(head, name)[1], "its head says"
     try:
-        found = pandas.to_datetime(pandas.Series(texts), format="ISO8601", utc=True)
-    except (ValueError, TypeError):
-        return None
-    if found.isna().any():
-        return None
-    return found.astype("datetime64[ns, UTC]").astype("int64").to_numpy()
+        if name == "time":
+            check_precision(values)
+        if name == "time" and unit is None:
+            unit, source = guessed_unit(values), "its numbers leave no doubt"
+        size = 1.0 if unit is None else size_of(unit, name)
+    except ValueError as error:
+        raise fault(f"{where}: {error}") from None
+    if size != 1.0:
+        written = unit if isinstance(unit, str) else f"units of {unit:g}"
+        table.notes.append(f"{name} converted from {written} to SI units, as {source}.")
+    if name == "time" and since_1970(abs(float(values[0])) * size):
+        values = values - values[0]  # whole numbers stay exact
+        table.notes.append("time counts from 1970; the first time was subtracted.")
+    values = in_si(values.astype(float), size)
+    if factor is not None:
+        factor = number(f"factors of {name}", factor)
+        table.notes.append(f"{name} multiplied by {factor:g}, as factors says.")
+        return values * factor
+    if isinstance(unit, str) and spelled(unit) in ("A", "mA"):
+        advice = f'give its torque for an ampere, like factors={{"{name}": 0.7}} (N m/A)'
+        raise fault(f"{where}: is a current; {advice}")
+    farthest = values[np.argmax(np.abs(values))]
+    if unit is None and name in _JOINTS["q"] and abs(farthest) > _TURNS:
+        advice = f'say by units={{"{name}": "deg"}} or {{"{name}": "rad"}}'
+        raise fault(f"{where}: goes to {farthest:g}: degrees, or a joint that turns on? {advice}")
+    return values
+
+
+def _runs(table: Table, data, joints: int, skip_bad: bool) -> list[LoggedRun]:
+    """Runs, which have a label of their own, or begin where their time does."""
+    groups, word = [(table.path, data)], "run"
+    if "run" in data:
+        labels = data["run"].convert_dtypes().astype(str)
+        groups = [(f"{table.path}, run {x}", part) for x, part in data.groupby(labels, sort=False)]
+        word = "part"
+    runs, begun, late = [], [], 0
+    for name, group in groups:
+        t, lines = group["time"].to_numpy(), group.index.to_numpy()
+        q, tau = (group[list(names)].to_numpy() for names in _JOINTS.values())
+        early = t[0] + 0.1 * (np.maximum.accumulate(t) - t[0])
+        begins = np.flatnonzero((np.diff(t) < 0) & (t[1:] <= early[:-1])) + 1
+        begun += [*lines[begins]]
+        for k, rows in enumerate(np.split(np.arange(len(t)), begins)):
+            if skip_bad:
+                later = np.r_[True, np.diff(np.maximum.accumulate(t[rows])) > 0]
+                late, rows = late + int((~later).sum()), rows[later]
+            of_run = f"{name}, {word} {k + 1}" if begins.size else name
+            runs.append(LoggedRun(of_run, t[rows], q[rows], tau[rows], lines[rows], joints))
+    if begun:
+        places = f"{plural(len(begun), 'place')}, the first at {table.row} {begun[0]}"
+        table.notes.append(f"time begins again at {places}; a run begins there.")
+    if late:
+        table.notes.append(f"{plural(late, table.row)} not later than the one before left out.")
+    return runs
+
+
+def _joints_like(table: Table, places: dict[str, int]) -> int:
+    """For how many joints there are heads like that of q1, but for their last number."""
+    kinds = []
+    for head in table.frame.columns:
+        parts = re.split(r"(\d+)", str(head))
+        kinds.append("#".join(["".join(parts[:-2]), parts[-1]]))
+    others = [kinds[place] for name, place in places.items() if name not in _JOINTS["q"]]
+    kind = kinds[places["q1"]]
+    return 2 if kind in others else max(2, kinds.count(kind))  # "column 7" tells nothing
+
+
+def _clock(cells):
+    """Dates or times of day as s since the first; None if they are neither."""
+    import pandas
+
+    if cells.dtype.kind not in "mM":
+        if pandas.to_numeric(cells, errors="coerce").notna().mean() >= 0.5:
+            return None
+        cells = cells.astype(str).str.replace(",", ".")
+    iso = {"format": "ISO8601", "utc": True}
+    for convert, options in ((pandas.to_timedelta, {}), (pandas.to_datetime, iso)):
+        try:
+            moments = convert(cells, errors="coerce", **options)
+        except TypeError:  # dates are no lengths of time
+            continue
+        if moments.notna().mean() > 0.5:
+            return (moments - moments.dropna().iloc[0]).dt.total_seconds()
+    return None
+
+
+def _numbers(cells) -> np.ndarray:
+    """Cells as numbers, whole ones exactly, and NaN for what is none."""
+    import pandas
+
+    numbers = pandas.to_numeric(cells, errors="coerce")
+    if numbers.dtype.kind in "iu" and not numbers.isna().any():
+        return numbers.to_numpy(np.int64)
+    if numbers.dtype.kind == "c":
+        return np.full(len(numbers), np.nan)
+    return numbers.to_numpy(float, na_value=np.nan)

@@ -3,53 +3,27 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
 from scipy.signal import cheby1, sosfiltfilt
 
-from ddlib._check import integer, number
-from ddlib.logs._text_files import fault, listed, shown
+from ddlib._check import flag, instance, integer, number
+from ddlib.logs._text import fault, shortened
 from ddlib.logs.log import Log, LoggedRecording, LoggedRun
+from ddlib.tables import plural
 from ddlib.trajectories import Trajectory
 
 _SMALL = 2e-3  # of a step: a stamp may be off by this, which no encoder sees
 _ALIKE = 1e-3  # by how much, relatively, clocks of runs may differ unseen
 _OTHER = 0.1  # by how much they differ if rates do
-_LOWER = 1.02  # a step this many times the log's needs a low-pass
 _MUCH = 0.01  # of all samples: to lose or to invent more is worth a warning
 
 
 class LogWarning(UserWarning):
     """Much of a log was left out or filled in, to bring it onto an even grid."""
-
-
-@dataclass
-class Piece:
-    """Samples of a run without a gap."""
-
-    run: str
-    t: np.ndarray
-    q: np.ndarray
-    tau: np.ndarray
-    lines: np.ndarray
-
-    def cut(self, part) -> Piece:
-        """Those samples that a slice or a mask picks."""
-        return Piece(self.run, self.t[part], self.q[part], self.tau[part], self.lines[part])
-
-    def at(self, t) -> Piece:
-        """Interpolated at other times: angles by cubic splines, torques by straight lines."""
-        if t.shape == self.t.shape and (t == self.t).all():
-            return self
-        q, tau = (
-            make_interp_spline(self.t, x, min(degree, len(self.t) - 1))(t)
-            for x, degree in ((self.q, 3), (self.tau, 1))
-        )
-        right = np.clip(np.searchsorted(self.t, t), 1, len(self.t) - 1)
-        nearest = right - (t - self.t[right - 1] < self.t[right] - t)
-        return Piece(self.run, t, q, tau, self.lines[nearest])
 
 
 def resample(
@@ -62,11 +36,13 @@ def resample(
 ) -> LoggedRecording:
     """Bring the runs of a log onto one even grid, and into arrays of equal length.
 
-    Stamps that were rounded stand for samples at equal steps, of the mean length: samples stay as
-    they are. Else angles are interpolated by cubic splines and torques by straight lines. A lower
-    rate is taken after a low-pass without a lag, the same for angles and torques (Chebyshev's, of
-    order 8, there and back). Gaps part a run into several. Of runs of unlike lengths all are cut
-    to the length that keeps most samples, and what is shorter is left out.
+    If steps are whole multiples of the usual one, samples are missing. Stamps that were rounded
+    stand for samples at equal steps, of the mean length: samples stay as they are. Stamps that may
+    be either are read so that the angles are smoother. Else angles are interpolated by cubic
+    splines and torques by straight lines. A lower rate is taken after a low-pass without a lag, the
+    same for angles and torques (Chebyshev's, of order 8, there and back). Gaps part a run into
+    several. Of runs of unlike lengths all are cut to the length that keeps most samples, and what
+    is shorter is left out.
 
     Parameters
     ----------
@@ -80,8 +56,8 @@ def resample(
     seconds : float, optional
         Length into which all runs are cut, s; what is left at their ends is left out.
     trust_stamps : bool
-        Whether samples were taken when uneven stamps say. If False, they were taken at equal steps,
-        and the stamps came late.
+        Whether samples were taken when stamps say. If False, they were taken at equal steps, none
+        is missing but in gaps, and the stamps came late.
 
     Returns
     -------
@@ -99,322 +75,274 @@ def resample(
     LogWarning
         If more than a hundredth of the samples were left out or filled in.
     """
-    recording, told = resampled(log, step, longest_gap, seconds, trust_stamps)
-    if told:
-        warnings.warn(told, LogWarning, stacklevel=2)
-    return recording
+    return on_one_grid(log, step, longest_gap, seconds, trust_stamps)
 
 
-def resampled(log, step, longest_gap, seconds, trust_stamps) -> tuple[LoggedRecording, str]:
-    """The recording of `resample`, and the text of its warning if there is one."""
-    if not isinstance(log, Log):
-        raise TypeError(f"log must be a Log, as read_log gives, got {type(log).__name__}")
-    if step is not None:
-        step = number("step", step, 0.0, open_low=True)
+def on_one_grid(log, step, longest_gap, seconds, trust_stamps) -> LoggedRecording:
+    """What `resample` returns; its warning names the line that called the caller."""
+    instance("log", log, Log)
+    for name, value in (("step", step), ("seconds", seconds)):
+        if value is not None:
+            number(name, value, 0.0, open_low=True)
     integer("longest_gap", longest_gap, 1)
-    if seconds is not None:
-        seconds = number("seconds", seconds, 0.0, open_low=True)
+    flag("trust_stamps", trust_stamps)
     if not log.runs:
         raise ValueError("log must hold one run or more, got none")
     for run in log.runs:
         _check_times(run)
-    own = [_step_of(run.t) for run in log.runs]
-    common = float(np.median(own))
-    for run, one in zip(log.runs, own):
-        if step is None and abs(one / common - 1) > _OTHER:
-            first = shown(log.runs[int(np.argmin(np.abs(np.array(own) - common)))].name, 80)
-            raise fault(
-                f"{shown(run.name, 80)}: steps of {one:g} s, where {first} has {common:g} s; "
-                f"say by step= to which all are brought"
-            )
+    if step is None:
+        _check_rates(log.runs)
     notes = list(log.notes)
-    pieces, lost = _pieces(log, own, longest_gap, notes)
-    if step is not None:  # three samples at least, and no flood of them
-        number("step", step, min(own) / 100, max(np.ptp(piece.t) for piece in pieces) / 2)
-    made, added = _even(pieces, step, trust_stamps, notes)
-    grid = made[0].t[1] - made[0].t[0] if step is None else step
-    total = sum(len(piece.t) for piece in made)
-    made = _of_one_length(made, grid, seconds, notes)
-    kept = sum(len(piece.t) for piece in made)
-    changed = (total - kept) / total, added / total, lost / (total + lost)
-    told = ""
-    if max(changed) > _MUCH:
-        what = "filled in" if changed[1] == max(changed) else "left out"
-        told = (
-            f"{shown(log.runs[0].name, 100)}: {100 * max(changed):.0f} % of the samples of the log "
-            f"were {what}; the recording's notes say where"
-        )
-    return _recording(made, grid, notes), told
+    pieces = [piece for run in log.runs for piece in _parted(run, longest_gap, notes)]
+    if not pieces:
+        raise fault(f"{shortened(log.runs[0].name, 100)}: gaps leave no three samples in a row")
+    grids = [_grid(piece, trust_stamps, notes) for piece in pieces]
+    target = _common_step(pieces, grids, step, notes)
+    even = [_even(piece, grid, target, notes) for piece, grid in zip(pieces, grids)]
+    runs = _of_one_length(even, target, seconds, notes)
+    logged, parted, total, kept = (
+        sum(len(run.t) for run in some) for some in (log.runs, pieces, even, runs)
+    )
+    changes = {
+        "left out": 1 - parted / logged * kept / total,
+        "filled in": sum(grid.missing for grid in grids) / total,
+    }
+    what = max(changes, key=changes.get)
+    if changes[what] > _MUCH:
+        name = shortened(log.runs[0].name, 100)
+        told = f"{100 * changes[what]:.0f} % of the samples of the log were {what}"
+        warnings.warn(f"{name}: {told}; the recording's notes say where", LogWarning, stacklevel=3)
+    return _recording(runs, target, notes)
 
 
 def _check_times(run: LoggedRun) -> None:
-    """Refuse a run whose times do not grow."""
-    name = shown(run.name, 100)
+    """Refuse a run of which no grid can be made."""
+    name, steps = shortened(run.name, 100), np.diff(run.t)
     if len(run.t) < 3:
         raise fault(f"{name}: must have three samples or more, got {len(run.t)}")
+    if not (steps > 0).all():
+        k = int(np.argmin(steps > 0))
+        advice = "skip_bad=True leaves such lines out; run= is a column that tells runs apart"
+        raise fault(
+            f"{name}, line {run.lines[k + 1]}: time must grow, but {run.t[k]:.9g} s is followed by "
+            f"{run.t[k + 1]:.9g} s, one of {plural(int((steps <= 0).sum()), 'place')}; {advice}"
+        )
+
+
+def _check_rates(runs) -> None:
+    """Refuse runs of different rates."""
+    steps = np.array([_usual_step(np.diff(run.t)) for run in runs])
+    off = np.abs(steps / np.median(steps) - 1)
+    if off.max() > _OTHER:
+        k = int(np.argmax(off))
+        these = f"steps of {steps[k]:g} s, where {np.median(steps):g} s are usual"
+        name = shortened(runs[k].name, 100)
+        raise fault(f"{name}: {these}; say by step= to which all are brought")
+
+
+def _parted(run: LoggedRun, longest_gap: int, notes) -> list[LoggedRun]:
+    """A run parted at its gaps, without parts of less than three samples."""
     steps = np.diff(run.t)
-    bad = np.flatnonzero(~(steps > 0))
-    if not bad.size:
-        return
-    k = bad[0]
-    place = f"{name}, line {run.lines[k + 1]}: time must grow, but"
-    ends = f"{run.t[0]:.9g} s to {run.t[-1]:.9g} s"
-    if (steps < 0).all():
-        raise fault(f"{place} falls throughout, from {ends}; is the file in reverse order?")
-    if (steps == 0).all():
-        raise fault(f"{place} is {run.t[0]:.9g} s throughout; is it the right column?")
-    told = f"{place} {run.t[k]:.9g} s is followed by {run.t[k + 1]:.9g} s"
-    if bad.size > 1:
-        told += f" (and {bad.size - 1} more such places)"
-    if run.t[k + 1] <= run.t[0] + abs(steps[steps > 0].mean()):
-        raise fault(f"{told}; if a run begins there, tell runs apart by a column, run=")
-    raise fault(f"{told}; skip_bad=True leaves such lines out")
+    cuts = np.flatnonzero(steps > (longest_gap + 0.5) * _usual_step(steps)) + 1
+    if not cuts.size:
+        return [run]
+    parts = np.split(np.arange(len(run.t)), cuts)
+    lost = sum(len(part) for part in parts if len(part) < 3)
+    notes.append(
+        f"{shortened(run.name, 100)}: parted at {plural(cuts.size, 'gap')} of more than "
+        f"{longest_gap} steps, the longest of {steps.max():.3g} s before line "
+        f"{run.lines[steps.argmax() + 1]}; {plural(lost, 'sample')} between gaps left out."
+    )
+    cut = [_cut(run, part, f"{run.name}, part {k + 1}") for k, part in enumerate(parts)]
+    return [part for part in cut if len(part.t) > 2]
 
 
-def _step_of(t) -> float:
+def _usual_step(steps) -> float:
     """The step at which samples were taken, though some are missing or stamps uneven."""
-    steps = np.diff(t)
-    step = float(np.median(steps))
-    for _ in range(5):
-        count = np.round(steps / step)
-        near = (count >= 1) & (count <= 3)
-        if near.mean() < 0.9 or (count < 1).any():
-            return _mean_step(steps)
-        step = float(steps[near].sum() / count[near].sum())
-    left = t[1:] - step * np.cumsum(count)
-    return step if np.ptp(left) < step else _mean_step(steps)
-
-
-def _mean_step(steps) -> float:
-    for _ in range(20):
-        fine = steps <= 5 * steps.mean()
-        if fine.all():
-            break
-        steps = steps[fine]
+    usual = float(np.percentile(steps, 50, method="lower"))  # a step that occurs
+    multiples = np.round(steps / usual)
+    if multiples.min() > 0 and (multiples <= 3).mean() > 0.9:
+        return usual
+    while steps.max() > 5 * steps.mean():  # stamps come in bursts
+        steps = steps[steps <= 5 * steps.mean()]
     return float(steps.mean())
 
 
-def _pieces(log, own, longest_gap, notes) -> tuple[list[Piece], int]:
-    """Runs parted at their gaps, and how many samples were lost in pieces too short to use."""
-    pieces, lost = [], 0
-    for run, step in zip(log.runs, own):
-        steps = np.diff(run.t)
-        cuts = np.flatnonzero(steps > (longest_gap + 0.5) * step) + 1
-        if cuts.size:
-            worst = int(steps.argmax())
-            notes.append(
-                f"{shown(run.name, 100)}: parted at {_times(cuts.size, 'gap')} of more than "
-                f"{longest_gap} steps, the longest of {steps[worst]:.3g} s before line "
-                f"{run.lines[worst + 1]}."
-            )
-        for k, rows in enumerate(np.split(np.arange(len(run.t)), cuts)):
-            name = f"{run.name}, part {k + 1}" if cuts.size else run.name
-            if len(rows) < 3:
-                lost += len(rows)
-                continue
-            piece = Piece(name, run.t, run.q, run.tau, run.lines)
-            pieces.append(piece.cut(rows) if cuts.size else piece)
-    if lost:
-        notes.append(f"{_times(lost, 'sample')} between gaps left out.")
-    if not pieces:
-        raise fault(f"{shown(log.runs[0].name, 100)}: gaps leave no three samples in a row")
-    return pieces, lost
-
-
-def _even(pieces, step, trust_stamps, notes) -> tuple[list[Piece], int]:
-    """All pieces at times with one even step, and how many samples were filled in."""
-    fits = [_fit(piece.t) for piece in pieces]
-    weights = np.array([len(piece.t) for piece in pieces], float)
-    steps = np.array([fit.step for fit in fits])
-    mean = float((steps * weights).sum() / weights.sum())
-    target = mean if step is None else step
-    lower = 1 + _OTHER if step is None else _LOWER
-    made, added = [], 0
-    for piece, fit in zip(pieces, fits):
-        name, n = shown(piece.run, 100), len(piece.t)
-        doubt = fit.grain / (n * fit.step)
-        alike = abs(fit.step / target - 1) <= max(_ALIKE, doubt)
-        if fit.count is not None and fit.off > _SMALL * fit.step:
-            notes.append(
-                f"{name}: stamps are rounded (steps of {np.diff(piece.t).min():.6g} to "
-                f"{np.diff(piece.t).max():.6g} s); taken as even steps of {fit.step:.6g} s."
-            )
-        if fit.count is None and not trust_stamps:
-            fit = replace(fit, count=np.arange(n), step=(piece.t[-1] - piece.t[0]) / (n - 1))
-            alike = step is None or abs(fit.step / target - 1) <= _ALIKE
-            notes.append(
-                f"{name}: uneven stamps taken as late notes of samples at even steps of "
-                f"{fit.step:.6g} s; the stamps are off by up to {1e3 * fit.off:.3g} ms."
-            )
-        if fit.count is not None:  # samples lie on a grid, some of them may be missing
-            every = np.arange(fit.count[-1] + 1)
-            on_grid = Piece(
-                piece.run, piece.t[0] + fit.step * fit.count, piece.q, piece.tau, piece.lines
-            )
-            if len(every) > n:
-                added += len(every) - n
-                first = int(np.argmax(np.diff(fit.count) > 1))
-                notes.append(
-                    f"{name}: {_times(len(every) - n, 'missing sample')} interpolated, the first "
-                    f"after line {piece.lines[first]}."
-                )
-                on_grid = on_grid.at(piece.t[0] + fit.step * every)
-                on_grid = _kept(on_grid, piece, fit.count)
-            elif fit.off <= _SMALL * fit.step:
-                on_grid = replace(on_grid, t=piece.t)  # the file's own times
-        else:
-            notes.append(
-                f"{name}: uneven stamps (steps of {np.diff(piece.t).min():.3g} to "
-                f"{np.diff(piece.t).max():.3g} s); angles interpolated by cubic splines and "
-                f"torques by lines, to even steps of {target:.6g} s."
-            )
-            on_grid = piece if not target > lower * fit.step else piece.at(_grid(piece.t, fit.step))
-            alike = False
-        if not alike:
-            if fit.count is not None:
-                notes.append(
-                    f"{name}: brought from steps of {fit.step:.6g} s to steps of {target:.6g} s"
-                    + (", finer than logged: nothing is gained." if target < fit.step else ".")
-                )
-            if target > lower * fit.step:
-                on_grid = _low_pass(on_grid, fit.step, target)
-                notes.append(
-                    f"{name}: angles and torques went through a low-pass without a lag, up to "
-                    f"{0.4 / target:.4g} Hz."
-                )
-            on_grid = on_grid.at(_grid(on_grid.t, target))
-        made.append(on_grid)
-    spread = steps.max() / steps.min() - 1
-    if step is None and spread > 1e-4 and all(fit.count is not None for fit in fits):
-        notes.append(
-            f"runs have steps of {steps.min():.6g} to {steps.max():.6g} s; all are taken as "
-            f"{mean:.6g} s."
-        )
-    same = all(len(x.t) == len(made[0].t) and (x.t == made[0].t).all() for x in made)
-    if not same or step is not None or not np.allclose(np.diff(made[0].t), mean, rtol=1e-6, atol=0):
-        start = made[0].t[0] if all(x.t[0] == made[0].t[0] for x in made) else 0.0
-        made = [replace(x, t=start + target * np.arange(len(x.t))) for x in made]
-    return made, added
-
-
-@dataclass
-class _Fit:
-    """The even grid that stamps are nearest to."""
+class _Grid(NamedTuple):
+    """The even grid that samples were taken on."""
 
     step: float
-    count: np.ndarray | None  # which point of the grid each sample is; None: on none
-    off: float  # largest distance of a stamp from it, s
-    grain: float  # what stamps were rounded to, s
+    count: np.ndarray  #: Which point of the grid each sample is.
+    off: float  #: Largest distance of a stamp from it, s.
+    grain: float  #: What stamps are rounded to, s.
+    uneven: bool = False  #: Whether samples lie between its points.
+
+    @property
+    def missing(self) -> int:
+        """How many of its points have no sample."""
+        return 0 if self.uneven else int(self.count[-1]) + 1 - len(self.count)
 
 
-def _fit(t) -> _Fit:
-    """Whether stamps are an even grid's, to rounding, and which of its points are missing."""
-    grain, tried = _grain(t), []
-    guesses = [np.arange(len(t))]
-    steps = np.round(np.diff(t) / _step_of(t))
-    if (steps >= 1).all():
-        guesses.append(np.r_[0, np.cumsum(steps)].astype(int))
-    for count in guesses:
-        slope = np.polynomial.polynomial.polyfit(count - count.mean(), t - t[0], 1)
-        left = t - t[0] - slope[0] - slope[1] * (count - count.mean())
-        off = float((left.max() - left.min()) / 2)
-        if off <= max(_SMALL * slope[1], 0.55 * grain):
-            if len(count) == count[-1] + 1 and off < 1e-9 * slope[1] * len(t):
-                slope[1] = (t[-1] - t[0]) / count[-1]
-            return _Fit(float(slope[1]), count, off, grain)
-        tried.append((off, float(slope[1])))
-    return _Fit(_step_of(t), None, tried[0][0], grain)
+def _grid(run: LoggedRun, trust_stamps: bool, notes) -> _Grid:
+    """The even grid of a run, from which samples are missing or whose stamps are rounded."""
+    name, steps = shortened(run.name, 100), np.diff(run.t)
+    stamps = f"stamps (steps of {steps.min():.6g} to {steps.max():.6g} s)"
+    with_gaps = np.r_[0, np.cumsum(np.round(steps / _usual_step(steps)))].astype(int)
+    in_a_row = _fitted(run.t, np.arange(len(run.t)))
+    fits = [grid for grid in (_fitted(run.t, with_gaps), in_a_row) if not grid.uneven]
+    if not trust_stamps:
+        grid, what = in_a_row._replace(uneven=False), "taken as late notes of"
+    elif not fits:
+        notes.append(
+            f"{name}: uneven {stamps}; angles interpolated by cubic splines and torques by lines."
+        )
+        return in_a_row
+    else:
+        rough = [_roughness(run.q, grid.count) for grid in fits]
+        grid, what = fits[-1 if rough[-1] < 0.95 * rough[0] else 0], "are rounded; taken as"
+    if grid.off > _SMALL * grid.step:
+        notes.append(
+            f"{name}: {stamps} {what} samples at even steps of {grid.step:.6g} s, from which they "
+            f"are off by up to {1e3 * grid.off:.3g} ms."
+        )
+    if grid.missing:
+        after = run.lines[np.argmax(np.diff(grid.count) > 1)]
+        notes.append(
+            f"{name}: {plural(grid.missing, 'missing sample')} interpolated, the first after line "
+            f"{after}; if none is missing, as stamps are rounded, say trust_stamps=False."
+        )
+    return grid
+
+
+def _fitted(t, count) -> _Grid:
+    """The grid that fits best, if samples are these points of it."""
+    step = np.polynomial.polynomial.polyfit(count - count.mean(), t - t[0], 1)[1]
+    off, grain = np.ptp(t - t[0] - step * count) / 2, _grain(t)
+    if off <= _SMALL * step:
+        step = (t[-1] - t[0]) / count[-1]
+    uneven = off > max(_SMALL * step, 0.55 * grain) or np.diff(count).min() < 1
+    return _Grid(float(step), count, float(off), grain, bool(uneven))
 
 
 def _grain(t) -> float:
-    """The power of ten that all stamps are multiples of, s; at least a nanosecond."""
-    for decimals in range(9):
-        scaled = t * 10.0**decimals
-        if np.abs(scaled - np.round(scaled)).max() < 2e-3:
-            return 10.0**-decimals
+    """The power of ten, or of two, that all stamps are multiples of, s; at least a nanosecond."""
+    units = [10.0**-k for k in range(9)] + [2.0**-k for k in range(30)]
+    for unit in sorted(units, reverse=True):
+        if np.abs(t / unit - np.round(t / unit)).max() < 2e-3:
+            return unit
     return 1e-9
 
 
-def _kept(full: Piece, piece: Piece, count) -> Piece:
-    """A filled-in piece with the samples that were there, to the last digit."""
-    q, tau = full.q.copy(), full.tau.copy()
-    q[count], tau[count] = piece.q, piece.tau
-    return replace(full, q=q, tau=tau)
+def _roughness(q, count) -> float:
+    """How far angles lie from straight lines between their neighbours, in all."""
+    share = (count[1:-1] - count[:-2]) / (count[2:] - count[:-2])
+    between = q[:-2] + (q[2:] - q[:-2]) * share[:, None]
+    return float(np.linalg.norm(q[1:-1] - between))
 
 
-def _grid(t, step) -> np.ndarray:
+def _common_step(pieces, grids, step, notes) -> float:
+    """The step to which all are brought."""
+    steps = np.array([grid.step for grid in grids])
+    if step is not None:  # three samples at least, and no flood of them
+        return number("step", step, steps.min() / 100, max(np.ptp(run.t) for run in pieces) / 2)
+    mean = float(np.average(steps, weights=[len(piece.t) for piece in pieces]))
+    if np.ptp(steps) > 1e-4 * mean and not any(grid.uneven for grid in grids):
+        theirs = f"{steps.min():.6g} to {steps.max():.6g} s"
+        notes.append(f"runs have steps of {theirs}; all are taken as {mean:.6g} s.")
+    return mean
+
+
+def _even(run: LoggedRun, grid: _Grid, target: float, notes) -> LoggedRun:
+    """A run at even steps of `target`, or of very nearly that."""
+    name, step = shortened(run.name, 100), grid.step
+    lower = target > (1 + _OTHER) * step
+    if grid.uneven:
+        step = step if lower else target
+        run = _at(run, _points(run.t, step))
+    elif grid.missing or grid.off > _SMALL * step:
+        taken = run = replace(run, t=run.t[0] + step * grid.count)
+        if grid.missing:
+            run = _at(taken, taken.t[0] + step * np.arange(grid.count[-1] + 1))
+            run.q[grid.count], run.tau[grid.count] = taken.q, taken.tau  # to the last digit
+    if abs(step / target - 1) <= max(_ALIKE, grid.grain / (step * len(run.t))):
+        return run
+    finer = ", finer than logged: nothing is gained" if target < step else ""
+    notes.append(f"{name}: brought from steps of {step:.6g} s to {target:.6g} s{finer}.")
+    if lower:
+        run = _low_pass(run, step, target)
+        notes.append(f"{name}: low-pass without a lag, up to {0.4 / target:.4g} Hz.")
+    return _at(run, _points(run.t, target))
+
+
+def _points(t, step) -> np.ndarray:
+    """Times from the first to the last, at even steps."""
     return t[0] + step * np.arange(int((t[-1] - t[0]) / step + 1e-6) + 1)
 
 
-def _low_pass(piece: Piece, step, target) -> Piece:
+def _at(run: LoggedRun, t) -> LoggedRun:
+    """A run at other times: angles by cubic splines, torques by straight lines."""
+    q = make_interp_spline(run.t, run.q, min(3, len(run.t) - 1))(t)
+    tau = make_interp_spline(run.t, run.tau, 1)(t)
+    nearest = np.searchsorted((run.t[1:] + run.t[:-1]) / 2, t)
+    return replace(run, t=t, q=q, tau=tau, lines=run.lines[nearest])
+
+
+def _low_pass(run: LoggedRun, step, target) -> LoggedRun:
     """What a lower rate can hold, by the filter of `scipy.signal.decimate`; no lag.
 
     That filter's gain at rest is 0.994, once there and once back, so it is divided out.
     """
     sections = cheby1(8, 0.05, 0.8 * step / target, output="sos")
     sections[0, :3] /= np.prod(sections[:, :3].sum(1) / sections[:, 3:].sum(1))
-    reach = min(len(piece.t) - 1, int(20 * target / step))
-    q, tau = (sosfiltfilt(sections, x, axis=0, padlen=reach) for x in (piece.q, piece.tau))
-    return replace(piece, q=q, tau=tau)
+    reach = min(len(run.t) - 1, int(20 * target / step))
+    q, tau = (sosfiltfilt(sections, x, axis=0, padlen=reach) for x in (run.q, run.tau))
+    return replace(run, q=q, tau=tau)
 
 
-def _of_one_length(pieces, step, seconds, notes) -> list[Piece]:
-    """All pieces cut to one length: `seconds`, or the one that keeps most samples."""
-    lengths = np.array([len(piece.t) for piece in pieces])
-    if seconds is not None:
+def _cut(run: LoggedRun, part, name: str) -> LoggedRun:
+    """Some samples of a run."""
+    t, q, tau, lines = (x[part] for x in (run.t, run.q, run.tau, run.lines))
+    return replace(run, name=name, t=t, q=q, tau=tau, lines=lines)
+
+
+def _of_one_length(runs, step, seconds, notes) -> list[LoggedRun]:
+    """All runs cut to one length: `seconds`, or the one that keeps most samples."""
+    lengths = np.array([len(run.t) for run in runs])
+    if seconds is None:
+        length = int(max(np.sort(lengths)[::-1], key=lambda n: n * (lengths >= n).sum()))
+        counts = np.minimum(lengths // length, 1)
+    else:
         length = round(seconds / step)
         if not 3 <= length <= lengths.max():
             raise ValueError(
-                f"seconds must lie in [{3 * step:g}, {lengths.max() * step:g}] for these runs, "
-                f"got {seconds:g}"
+                f"seconds must lie in [{3 * step:g}, {lengths.max() * step:g}], got {seconds:g}"
             )
-        cut = [
-            replace(piece.cut(slice(k * length, (k + 1) * length)), run=_part(piece, k, length))
-            for piece in pieces
-            for k in range(len(piece.t) // length)
-        ]
-        left = lengths.sum() - length * len(cut)
+        counts = lengths // length
+    cut = []
+    for run, count in zip(runs, counts):
+        for k in range(count):
+            name = run.name if count == 1 else f"{run.name}, cut {k + 1}"
+            cut.append(_cut(run, slice(k * length, (k + 1) * length), name))
+    if short := [run.name for run, count in zip(runs, counts) if not count]:
+        notes.append(f"left out, as shorter than {plural(length, 'sample')}: {', '.join(short)}.")
+    if ends := int((lengths - counts * length)[counts > 0].sum()):
         notes.append(
-            f"cut into {_times(len(cut), 'run')} of {length} samples ({length * step:.6g} s)"
-            + (f"; {_times(left, 'sample')} at their ends left out." if left else ".")
+            f"cut into {plural(len(cut), 'run')} of {plural(length, 'sample')}, "
+            f"{length * step:.6g} s; {plural(ends, 'sample')} at their ends left out."
         )
-        t = cut[0].t[0] if len(cut) == len(pieces) else 0.0
-        return [replace(piece, t=t + step * np.arange(length)) for piece in cut]
-    if (lengths == lengths[0]).all():
-        return pieces
-    options = np.unique(lengths)[::-1]
-    length = int(options[np.argmax([n * (lengths >= n).sum() for n in options])])
-    short = [piece for piece in pieces if len(piece.t) < length]
-    long = [piece for piece in pieces if len(piece.t) > length]
-    if short:
-        worded = [f"{shown(piece.run, 60)} ({len(piece.t)} samples)" for piece in short]
-        notes.append(
-            f"left out as too short beside the {length} samples of others: "
-            f"{listed(worded, 200, each=90)}."
-        )
-    if long:
-        gone = sum(len(piece.t) - length for piece in long)
-        notes.append(
-            f"{_times(len(long), 'run')} cut to the {length} samples of the shortest that is "
-            f"kept; {_times(gone, 'sample')} at their ends left out. seconds= cuts long runs into "
-            f"several."
-        )
-    return [piece.cut(slice(length)) for piece in pieces if len(piece.t) >= length]
+    return cut
 
 
-def _part(piece, k, length) -> str:
-    return f"{piece.run}, cut {k + 1}" if len(piece.t) >= 2 * length else piece.run
-
-
-def _times(count, what) -> str:
-    return f"{count} {what}{'' if count == 1 else 's'}"
-
-
-def _recording(pieces, step, notes) -> LoggedRecording:
-    q, tau = (np.stack([getattr(piece, name) for piece in pieces]) for name in ("q", "tau"))
+def _recording(runs, step, notes) -> LoggedRecording:
+    """Runs of one length as a recording; where their times are one even grid, these are kept."""
+    t = runs[0].t
+    same = all(np.array_equal(run.t, t) for run in runs)
+    if not same or not np.allclose(np.diff(t), step, rtol=1e-6, atol=0.0):
+        t = (t[0] if all(run.t[0] == t[0] for run in runs) else 0.0) + step * np.arange(len(t))
+    q, tau, lines = (np.stack([getattr(x, name) for x in runs]) for name in ("q", "tau", "lines"))
     unknown = np.full_like(q, np.nan)
     return LoggedRecording(
-        pieces[0].t,
+        t,
         Trajectory(unknown, unknown, unknown),
         q,
         tau,
@@ -422,7 +350,8 @@ def _recording(pieces, step, notes) -> LoggedRecording:
         unknown,
         unknown,
         control_step=0.0,
-        names=tuple(piece.run for piece in pieces),
-        lines=np.stack([piece.lines for piece in pieces]),
+        names=tuple(run.name for run in runs),
+        lines=lines,
         notes=tuple(notes),
+        joints=max(run.joints for run in runs),
     )

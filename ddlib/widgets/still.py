@@ -74,7 +74,7 @@ def _draw_panel(ax, panel: Panel, curves):
     lines += panel.fixed.items()
     gap = np.diff(panel.x).min()
     for k, (label, y) in enumerate(lines):
-        colour, dash = COLOURS[k % 6], DASHES[k % 6]
+        colour, dash = COLOURS[k % len(COLOURS)], DASHES[k % len(DASHES)]
         if panel.kind == "bars":
             width = 0.8 * gap / len(lines)
             places = panel.x + (k - (len(lines) - 1) / 2) * width

@@ -9,7 +9,6 @@ from scipy.integrate import solve_ivp
 from beyond.studies import two_link
 from beyond.studies.checks import instruments
 from ddlib.dynamics import Arm
-from workshop import BOOK
 
 PARAMETERS = np.array([0.135, 0.033, 0.023, 3.4, 1.1, 0.003, 0.02, 0.02, 0.05, 0.05, 0, 0])
 
@@ -73,14 +72,3 @@ def test_smoothers_find_the_arm_without_noise(monkeypatch):
     for both in (False, True):
         found = instruments._butterworth((0, 1, 2), 16.0, both)
         np.testing.assert_allclose(found[:5], PARAMETERS[:5], rtol=0.05)
-
-
-def test_torques_are_currents():
-    with np.load(BOOK / "data" / "double-pendulum.npz") as kept:
-        assert set(kept.files) == {run for runs in two_link.RUNS.values() for run in runs}
-        for run in kept.files:
-            for torque in kept[run][:, 3:5].T:
-                assert len(np.unique(torque)) < 0.1 * len(torque) and np.abs(torque).max() < 2
-            planned, measured = kept[run][:, 5:7], kept[run][:, 3:5]
-            for one, other in zip(planned.T, measured.T):
-                assert np.corrcoef(one, other)[0, 1] > 0.9

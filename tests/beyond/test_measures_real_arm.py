@@ -5,7 +5,6 @@ import pytest
 
 from beyond.chapters import real_arm
 from ddlib.analysis import CLASSES
-from workshop.report import results
 
 pytestmark = pytest.mark.usefixtures("planted_members")
 
@@ -14,25 +13,17 @@ OFF = [1.0, 1.1, 0.9, 1.0, 0.7, 1.2]
 
 
 @pytest.fixture
-def plant(monkeypatch):
-    def put(**parts):
-        monkeypatch.setattr(results, "read", {"real-arm": parts}.__getitem__)
-
-    return put
-
-
-@pytest.fixture
-def ensembles(plant):
+def ensembles(planted_results):
     """``ensembles(real, *nulls)`` puts networks of such gains, over the true ones, in place."""
 
     def put(real, *nulls):
-        plant(windows={"21": {
+        planted_results(**{"real-arm": {"windows": {"21": {
             "real": ensemble(real), "untrained": ensemble(0, velocity=0.0),
             "identified": {"inertia": TRUE, "slope": TRUE}, "friction": TRUE / 7,
             "nulls": {k: ensemble(*n) for k, n in zip(("shifted", "phases"), nulls)},
             "deviations": {"velocity": 1 / TRUE, "acceleration": np.ones(6)},
             "curved": np.tile([0.1, 0.2, 0.3, 0.5, 0.6, 0.7], (4, 1)),
-        }})  # fmt: skip
+        }}}})  # fmt: skip
 
     return put
 

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from beyond.measures import rivals as measures
-from workshop.report import results
 
 pytestmark = pytest.mark.usefixtures("planted_members")
 
@@ -16,18 +15,17 @@ ROWS = [
 
 
 @pytest.fixture(autouse=True)
-def planted(monkeypatch):
+def planted(planted_results):
     rows = [{"rival": r, "inputs": "positions", "size": s, "count": c} for r, s, c in ROWS]
     tuned = {
         "network": (True, DAY), "small": (True, 0.5 * DAY[:5]), "worse": (True, 4 * DAY),
         "slow": (True, 2 * DAY), "large": (False, 0.1 * DAY), "ours": (True, 0.1 * DAY),
     }  # fmt: skip
     rivals = {n: {"within": w, "errors": {"trajectory 6": e}} for n, (w, e) in tuned.items()}
-    made = {
-        "rivals": {"budget": 100, "rows": rows},
-        "tuned": {"reference": "network", "own": "ours", "rivals": rivals},
-    }
-    monkeypatch.setattr(results, "read", made.__getitem__)
+    planted_results(
+        rivals={"budget": 100, "rows": rows},
+        tuned={"reference": "network", "own": "ours", "rivals": rivals},
+    )
 
 
 def test_the_size_is_the_largest_within_the_budget():

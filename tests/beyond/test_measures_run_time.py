@@ -20,7 +20,7 @@ def inside(stopped, error, poles):
 def plant(monkeypatch):
     loops = {
         "network, 0": inside([0, 0, 0, 1], [4, 2, 3, 9], [0.99, 0.98, 0.995, 1.005]),
-        "network, 5": inside([0, 0.6, 1, 1], [4, 2, 3, 3.5], [0.99, 0.98, 0.99, 0.995]),
+        "network, 5": inside([0.4, 0.6, 1, 1], [4, 2, 3, 3.5], [0.99, 0.98, 0.99, 0.995]),
     }
     found = {"shares": [0.0, 1.0, 2.0, 4.0], "readings": {"joint damping": {"inside": loops}}}
     monkeypatch.setattr(results, "read", {"run-time": found}.__getitem__)

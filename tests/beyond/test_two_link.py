@@ -6,7 +6,6 @@ import pytest
 from beyond.chapters import real_two_link_arm as chapter
 from beyond.studies import two_link
 from ddlib.dynamics import Arm
-from workshop.report import results
 
 
 @pytest.fixture
@@ -40,7 +39,7 @@ def test_slopes_are_the_mass_matrix_and_the_weight(motion):
     np.testing.assert_allclose(found[:, 0, 0, 0] - weight, g1 * np.cos(motion[:, 0]), atol=1e-6)
 
 
-def test_measures_on_planted_networks(monkeypatch):
+def test_measures_on_planted_networks(planted_results):
     def design(elbow, times):
         true = np.zeros((2, 2, 3))
         true[0, 0, 2], true[1, 1, 2] = 0.2, elbow
@@ -49,7 +48,7 @@ def test_measures_on_planted_networks(monkeypatch):
 
     planted = {"A0": design(0.03, [1.0] * 10), "C0": design(0.06, [0.8] * 10)}
     planted["C1"] = design(0.06, [1.5] * 10)
-    monkeypatch.setattr(results, "read", {"two-link": {"designs": planted}}.__getitem__)
+    planted_results(**{"two-link": {"designs": planted}})
     chapter._inertia.cache_clear()
     assert chapter.inertia_off().value == pytest.approx(1.5)
     assert chapter.elbow_moves().value == pytest.approx(1.6)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from axe import violations
-from widget_pages import NEXT_FRAME, PATHS, assert_curves, assert_exact_table, page_of
+from widget_pages import NEXT_FRAME, PATHS, assert_curves, assert_exact_table
 
 from beyond.chapters.widgets.stirring import StirringPicker
 from beyond.studies.loop.stirring import PLACES
@@ -51,10 +51,9 @@ def test_what_cannot_be_reached_is_zero_and_marked(picker):
 
 
 @pytest.mark.browser
-def test_a_page_without_kernel_refuses_in_words(tmp_path, visit, picker):
+def test_a_page_without_kernel_refuses_in_words(page_with, picker):
     picker.distance, picker.radius, picker.bearing = 0.65, 0.12, -60
-    page = visit(page_of(tmp_path / "page.html", picker)).page
-    page.evaluate(NEXT_FRAME)
+    page = page_with(picker)
     charts, verdict = page.locator(".charts"), page.locator(".verdict")
     assert charts.is_visible() and "Within reach" in verdict.inner_text()
     pad, before = page.locator("svg.pad"), page.evaluate(PATHS)

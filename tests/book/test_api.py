@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import re
 
-import pytest
 from book_pages import API, ROOT, source
-
-from workshop.report.evidence.claims import load, measuring_function
 
 PACKAGE = ROOT / "ddlib"
 FILES = sorted(PACKAGE.rglob("*.py"))
@@ -39,22 +36,3 @@ def test_every_module_is_documented_once_on_the_page_of_its_package():
     assert own == sorted((module, page_of(module)) for module in modules)
     assert len(dict(places)) == len(places), "a module is documented twice"
     assert re.findall(r"\{doc\}`(api/\w+)`", texts["book/api"]) == [page[5:] for page in API[1:]]
-
-
-def test_the_code_of_every_claim_is_documented():
-    named = re.findall(r"automodule:: ([\w.]+)", source("book/api/workshop").read_text("utf-8"))
-    modules = {measuring_function(claim.measure).__module__ for claim in load() if claim.measure}
-    assert len(modules) > 20 and modules <= set(named)
-
-
-@pytest.mark.built
-@pytest.mark.parametrize("page", [page for page in API[1:] if "workshop" not in page])
-def test_no_field_stands_twice_and_no_type_is_private(parsed, page):
-    article = parsed(page).select_one("article")
-    for one in article.select("dl.class"):
-        own = ":scope > dd > "
-        entries = {dt["id"].split(".")[-1] for dt in one.select(f"{own}dl.attribute > dt[id]")}
-        listed = {name.get_text() for name in one.select(f"{own}dl.field-list dd strong")}
-        assert not entries & listed, one.dt["id"]
-    text = article.get_text(" ")
-    assert not re.findall(r"(?<![\w.-])_[A-Z]\w+", text)

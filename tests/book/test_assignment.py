@@ -8,7 +8,7 @@ import sys
 
 import nbformat
 import pytest
-from book_pages import ROOT, WALK
+from book_pages import ROOT
 from chapter_rules import code_of, is_check, is_starter
 from open_cells import exercises, lesson
 
@@ -17,7 +17,7 @@ import assignment
 import solved
 import variants
 
-LESSONS = [page.removeprefix("book/") for page in WALK]
+LESSONS = [*assignment.lessons(ROOT)]
 QUICK = ("dynamics", "window-size")
 VARIED = [name for name in LESSONS if not isinstance(solved.variants(name), str)]
 FAST = ("dynamics", "feedback", "inertia-in-the-weights")  # all their variants, at each run

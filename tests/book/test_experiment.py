@@ -11,11 +11,10 @@ from widget_pages import write
 pytestmark = pytest.mark.browser
 
 
-@pytest.mark.parametrize("width", [1280, 390])
-def test_other_trajectories_are_recorded_learnt_and_weighed(site, visit, width):
-    """A newcomer's way: two other trajectories, a guess, the inertia beside the arm's."""
+def test_other_trajectories_are_recorded_learnt_and_weighed(site, visit):
+    """A newcomer's way on a phone: other trajectories, a guess, the inertia beside the arm's."""
     began = time.monotonic()
-    here = visit(f"{site}/book/window-networks.html", width=width)
+    here = visit(f"{site}/book/window-networks.html", width=390)
     page = here.page
     trainer = page.locator(".ddlib-trainer")
     for joint, trajectory, extent in (("shoulder", 1, "30"), ("elbow", 4, "20")):

@@ -16,7 +16,6 @@ from workshop.chapters import index
 
 SUPPORT = ROOT / "tests" / "support"
 ALLOWED = yaml.safe_load((SUPPORT / "allowed_numbers.yml").read_text(encoding="utf-8"))
-REASONS = {"parameter", "criterion", "mathematics", "literature", "printed"}
 BOUND = yaml.safe_load((SUPPORT / "bound_words.yml").read_text(encoding="utf-8"))
 ELSEWHERE = {"book/provenance", *API}  # pages of parameters and of signatures
 NAMES = {page.removeprefix("book/"): page for page in PAGES if page not in ELSEWHERE}
@@ -40,30 +39,6 @@ def test_results_are_quoted():
         if (numbers := prose.typed_numbers(one, allowed(name)))
     }
     assert not typed
-
-
-def test_allowed_numbers_have_a_reason():
-    entries = [entry for page in ALLOWED.values() for entry in page]
-    assert not [e for e in entries if set(e) != {"text", "why"} or e["why"] not in REASONS]
-
-
-RESULTS = [
-    ("At window 21 the RMSS falls to 0.44, at 41 to 0.51.", ["0.44", "0.51"]),
-    ("The knock reaches −3.2 N m.", ["−3.2"]),
-    ("The error is {glue:text}`a-b:.2f`, or 23 % of the torque.", ["23"]),
-    ("The paper prints 0.22; the error here is 0.69.", ["0.69"]),
-    ("Figure 5-4 has an error of 0.3 in trajectory 6.", ["0.3"]),
-    ("Torque and position were measured every 10 ms for 300 samples.", []),
-    ("In Figures 5-4 to 5-6 and Table 4-1 errors are pooled; see section 5.1.", []),
-    ("The error $e = 0.5$ and `rmss(x, 0.5)` are mathematics and code.", []),
-    ("The 25 networks of windows 11, 21 and 41 have errors after 20,000 epochs.", []),
-    ("It lies 17 km from here.", []),
-]
-
-
-def test_typed_results_are_told_from_names_and_settings():
-    for planted, numbers in RESULTS:
-        assert prose.typed_numbers(prose.sentence(planted)) == numbers, planted
 
 
 def checks(name: str) -> set[str]:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import dd_runtime
-import lessons
 import pytest
-from book_pages import CHAPTERS, PAGES, ROOT, source
+from book_pages import CHAPTERS, PAGES, source
 
 
 @pytest.mark.built
@@ -28,20 +26,3 @@ def test_every_notebook_has_its_time_and_share(parsed):
     pattern = re.compile(rf"Time to run\s+(.*?) {dd_runtime.MEASURED}")
     told = {name: pattern.search(parsed(name).article.get_text())[1] for name in CHAPTERS}
     assert told == {name: dd_runtime.spoken_time(seconds[name]) for name in CHAPTERS}
-
-
-@pytest.mark.built
-def test_pages_tell_the_time_to_read_them(parsed):
-    """Each chapter, and the ten stations of the walk on the first page."""
-    told = []
-    for name in CHAPTERS:
-        text = parsed(name).article.get_text()
-        told.append((re.search(r"Time to read\s+(\d+) minutes, counted", text)[1], [name]))
-    for way in parsed("book/index").select("#the-walk > .tag_station + p"):
-        pages = [Path(a["href"]).stem for a in way.select("a[href]")]
-        minutes = re.search(r"(\d+) minutes", way.get_text())[1]
-        told.append((minutes, [f"book/{name}" for name in pages]))
-    assert len(told) == len(CHAPTERS) + 10
-    for minutes, pages in told:
-        words = sum(lessons.lesson(ROOT, page).words for page in pages)
-        assert abs(int(minutes) - words / lessons.WORDS_A_MINUTE) <= 5, pages

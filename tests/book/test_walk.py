@@ -1,10 +1,8 @@
 """Lessons: short, with code in the open that runs alone, follows changes, and judges answers."""
 
-import ast
-
 import pytest
 from book_pages import ROOT, WALK
-from chapter_rules import CHANGE_THIS, SHAPE, TUTORIAL, tags
+from chapter_rules import SHAPE, TUTORIAL
 from nine_answers import Nine, wrong
 from open_cells import CHANGES, SHORT, execute, exercises, imports, lesson, run
 
@@ -51,10 +49,3 @@ def test_a_change_goes_through_to_the_last_figure(page, change, tmp_path, monkey
     monkeypatch.chdir(tmp_path)
     name = page[5:]
     run(page, SHORT.get(name, ""), CHANGES[name][change])
-
-
-def test_what_makes_a_training_short_are_settings_of_the_lesson():
-    for name, line in SHORT.items():
-        settings = next(c.source for c in lesson(f"book/{name}").cells if CHANGE_THIS in tags(c))
-        known = {n.id for n in ast.walk(ast.parse(settings)) if isinstance(n, ast.Name)}
-        assert {n.id for n in ast.walk(ast.parse(line)) if isinstance(n, ast.Name)} <= known, name

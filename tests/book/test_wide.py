@@ -48,24 +48,6 @@ def test_names_and_numbers_are_whole(name, width, selector, ends, site, visit):
     assert seen and not cut
 
 
-def test_a_comma_stays_with_its_formula(site, visit):
-    """At any width of a column."""
-    page = visit(f"{site}/book/notation.html").page
-    ends = page.evaluate(
-        """() => [...document.querySelectorAll("article span.math")]
-          .map((formula) => {
-            const after = formula.nextSibling;
-            if (after?.nodeType !== 3 || !/^[,.;:]/.test(after.data)) return null;
-            const range = document.createRange();
-            range.setStart(after, 0);
-            range.setEnd(after, 1);
-            const [mark, own] = [range, formula].map((x) => x.getBoundingClientRect());
-            return mark.left >= own.left && mark.top < own.bottom + 4;
-          }).filter((stays) => stays !== null)"""
-    )
-    assert len(ends) > 20 and all(ends)
-
-
 # How far boxes reach beyond their width, px, and the size of the letters in them, px.
 BEYOND = """([selector, text]) => [...document.querySelectorAll(selector)]
   .filter((el) => el.clientWidth)

@@ -23,9 +23,9 @@ from beyond.figures import maps
 from ddlib import figures as shared
 from ddlib.dynamics import CMU_DD_ARM_II, Operations
 from ddlib.figures import COLOURS, INK
-from ddlib.identification import Equations, least_squares
+from ddlib.identification import Equations, check_recording, least_squares
 from ddlib.learning import Weights
-from ddlib.logs import Log, LoggedRun, check_recording
+from ddlib.logs import Log, LoggedRun, resample
 from workshop.chapters import (
     convolution_filters as filters,
     dynamics,
@@ -50,7 +50,6 @@ SPIKED = LoggedRun(
 FAN = X[:, None] * [1.0, 2.0, 4.0, 7.0]
 CURVES = {"q, rad": {"one": X, "two": X**2}, "error": {"two": (X[1:], 1 / X[1:])}}
 CASES = {"small swing": np.sin(X), "large swing": 3 * np.sin(X), "none": 0 * X}
-FILTERS = {f"unit {k}": RNG.normal(size=21).cumsum() for k in range(3)}
 PRINTED = {"training": {11: 0.1, 21: 0.09, 41: 0.08}, "test": {11: 0.2, 21: 0.19, 41: 0.18}}
 TABLE = {
     name: {column: {w: RNG.uniform(0.02, 0.4, 25) for w in (11, 21, 41)} for column in PRINTED}
@@ -155,17 +154,7 @@ FIGURES = {
     ),
     "rmss_by_window": figure(partial(shared.rmss_by_window, TABLE, PRINTED), log="y"),
     "network_diagram": figure(lambda: shared.network_diagram(Weights.random(1, 21)[0])),
-    "hinton": figure(lambda: shared.hinton(Weights.random(1, 41)[0]), upon="#ffffff"),
-    "decomposed": figure(
-        partial(shared.decomposed, FILTERS, 0.01),
-        shows=[
-            xy(10.0 * np.arange(-10, 11), f, (f + f[::-1]) / 2 - f.mean(), (f - f[::-1]) / 2)
-            for f in FILTERS.values()
-        ],
-        upon="#ffffff",
-    ),
-    "checked": figure(lambda: shared.checked(check_recording(Log((SPIKED,))))),
-    "decomposed, one": figure(lambda: shared.decomposed(FILTERS["unit 0"], 0.01), upon="#ffffff"),
+    "checked": figure(lambda: shared.checked(check_recording(resample(Log((SPIKED,)))))),
     "arm_sketch": figure(
         partial(dynamics.arm_sketch, CMU_DD_ARM_II, [0.6, 0.9]),
         shows=[[[(0, 0), ELBOW], [ELBOW, HAND]]], upon="#ffffff",
@@ -238,7 +227,6 @@ FIGURES = {
             [[(0, 3), (1, 5)], [(0, 1.1), (0, 5.6)], [(1, 3), (1, 8.4)]],
         ],
     ),
-    "hinton_states": figure(lambda: states.hinton_states(Weights.random(1, 3)[0]), upon="#ffffff"),
     "torque_along": figure(
         partial(states._torque_along, T, EXACT, NETWORKS),
         shows=[xy(T, EXACT[:, j], NETWORKS[1, :, j]) for j in range(2)],
@@ -357,6 +345,11 @@ def test_table_4_1_has_every_network_medians_and_printed_values():
             }
         dashed = [line.get_ydata()[0] for line in axis.lines if line.get_linestyle() == "--"]
         assert dashed == list(printed.values())
+
+
+def test_panels_are_headed_by_their_cases():
+    axes = made("by_case")[1].axes
+    assert [axis.get_title(loc="left") for axis in axes] == list(CASES)
 
 
 def test_maps_have_a_cell_for_every_value():

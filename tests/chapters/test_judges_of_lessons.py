@@ -5,7 +5,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ddlib.analysis import savitzky_golay
 from workshop.chapters import (
     convolution_filters,
     hinton_diagrams,
@@ -85,16 +84,3 @@ def test_half_of_the_inertia_is_left_where_the_penalty_is_the_variance(capsys):
                -1.0: "Wrong: a penalty is positive"}  # fmt: skip
     for answer, begins in answers.items():
         assert judged(inertia_in_the_weights, answer, *given, capsys=capsys).startswith(begins)
-
-
-@pytest.mark.parametrize("width", [5, 11, 101])
-def test_small_weights_can_be_had_at_every_window(width, capsys):
-    """By the lesson's blocks; what is least is a half of the parabola's in long windows."""
-    s = np.arange(width) - width // 2
-    blocks = np.sign(s**2 - np.quantile(s**2, 0.55))
-    blocks = blocks - blocks.mean()
-    blocks = blocks / (blocks @ (0.01 * s) ** 2 / 2)
-    parabola = savitzky_golay(width, 2, 0.01, degree=2)
-    for answer, begins in ((blocks, "Right"), (parabola, "Wrong: a weight" if width > 5 else "Ri")):
-        hinton_diagrams.check(2, answer, width)
-        assert capsys.readouterr().out.startswith(begins)

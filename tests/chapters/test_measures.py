@@ -91,8 +91,9 @@ def test_runs_of_a_batch_are_runs_by_themselves(effects):
 def test_a_stiffer_loop_under_load_by_statics():
     """At rest under a load the error of PD is the load over its gain."""
     found = feedback.disturbances(2.0)
-    with_it = float(found.text.split(": ")[1].split("°")[0])
+    with_it, without = (float(x) for x in re.findall(r"([\d.]+)°", found.text))
     assert with_it == pytest.approx(np.rad2deg(2.0 / KP[0]) / np.sqrt(2), rel=0.1)
+    assert found.value == pytest.approx(without / with_it, rel=0.05)
 
 
 # --- the arm and what the rigid body leaves out --------------------------------------------------

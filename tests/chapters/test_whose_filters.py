@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from axe import violations
-from widget_pages import NEXT_FRAME, assert_exact_table, page_of
+from widget_pages import NEXT_FRAME, assert_exact_table
 
 from ddlib.analysis import CLASSES, gains, mean_gradient
 from ddlib.learning import Weights, cases
@@ -37,10 +37,9 @@ def test_galleries_have_rows_names_and_one_answer():
 
 
 @pytest.mark.browser
-def test_a_guess_is_judged_counted_and_kept(tmp_path, visit):
+def test_a_guess_is_judged_counted_and_kept(page_with):
     widget = WhoseFilters(ROUNDS)
-    opened = visit(page_of(tmp_path / "page.html", widget))
-    page = opened.page
+    page = page_with(widget)
     verdict, score = page.locator(".verdict"), page.locator(".score")
     assert "Which of the two" in verdict.inner_text() and score.inner_text() == "no guess yet"
     assert page.locator(".row.c0").count() == 0 and page.locator(".row").count() == 40
@@ -57,7 +56,7 @@ def test_a_guess_is_judged_counted_and_kept(tmp_path, visit):
     assert not violations(page)
     page.get_by_role("button", name="Reset").click()
     page.evaluate(NEXT_FRAME)
-    assert score.inner_text() == "no guess yet" and not opened.problems
+    assert score.inner_text() == "no guess yet"
 
 
 def test_torques_that_do_not_belong_are_as_large():
@@ -101,13 +100,6 @@ def test_the_sum_over_all_samples_is_the_inertia():
     inner = (LOG_STEP**2 / 2 * 2 * g[0, 1, [9, 11]]).sum()
     counted = widget.curves["sum"]
     assert np.allclose(counted[:2], [0, inner]) and np.allclose(counted[2:], inner)  # beyond: none
-
-
-@pytest.mark.parametrize("number, right, wrong", [(1, 1.5, 3.0), (1, 1.5, 0.75), (3, 99, 100)])
-def test_answers_are_judged(number, right, wrong, capsys):
-    for mine, begins in ((right, "Right"), (wrong, "Wrong")):
-        chapter.check(number, mine, 3.0)
-        assert capsys.readouterr().out.startswith(begins)
 
 
 def test_paths_add_up_to_the_network():

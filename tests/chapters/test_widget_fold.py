@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from widget_pages import NEXT_FRAME, opened, settings
+from widget_pages import NEXT_FRAME, settings
 
 from ddlib.simulation import LOG_STEP
 from workshop.chapters.widgets.fold import FilterFold
@@ -52,11 +52,9 @@ def test_a_line_hears_speed_alone_and_a_parabola_acceleration_alone(widget):
 
 
 @pytest.mark.browser
-def test_a_motion_by_its_button(tmp_path, visit, widget):
-    here = opened(tmp_path, visit, widget)
-    page = here.page
+def test_a_motion_by_its_button(page_with, widget):
+    page = page_with(widget, calm=True)
     page.get_by_role("button", name="Speed up").click()
     page.evaluate(NEXT_FRAME)
     slider = page.get_by_role("slider", name="Acceleration")
     assert slider.get_attribute("aria-valuetext").replace(",", "").startswith("1000")
-    assert not here.problems

@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from widget_pages import CALM, NEXT_FRAME, drag, functions, page_of
+from widget_pages import LESSONS, NEXT_FRAME, drag, functions
 
 from ddlib.control import PID, Feedforward, closed_loop, plant
 from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM
@@ -15,7 +15,7 @@ from ddlib.effects import Effects, ViscousFriction
 from ddlib.setups import JOINT_DAMPING_KP as KP, JOINT_DAMPING_VISCOUS as VISCOUS
 from ddlib.simulation import CONTROL_STEP, record
 from ddlib.trajectories import APPENDIX_I
-from ddlib.widgets.engine import _loops as loops
+from workshop.chapters.widgets import loops
 from workshop.chapters.widgets.tuner import PIDTuner, tuned
 
 ARM = CMU_DD_ARM_II
@@ -32,7 +32,7 @@ def tuner():
 
 @pytest.fixture(scope="module")
 def engine(browser):
-    with functions(browser, "loops.js") as call:
+    with functions(browser, LESSONS / "loops.js") as call:
         yield call
 
 
@@ -161,9 +161,8 @@ def value_of(page, tuner, name):
 
 
 @pytest.mark.browser
-def test_drag_keys_and_the_ghost(tmp_path, visit, tuner):
-    opened = visit(page_of(tmp_path / "page.html", tuner), **CALM)
-    page = opened.page
+def test_drag_keys_and_the_ghost(page_with, tuner):
+    page = page_with(tuner, calm=True)
     assert_computed(page)
     drag(page, page.locator("input[id$=-kp]").bounding_box(), (0.56, 0.5), (0.9, 0.5))
     kp = value_of(page, tuner, "kp")
@@ -177,14 +176,13 @@ def test_drag_keys_and_the_ghost(tmp_path, visit, tuner):
     page.locator("input[id$=-late]").press("ArrowRight")
     assert_computed(page, kp=kp, kd=150.0, ki=ki, late=1)
     assert page.evaluate(SEEN)["before"] == {**START, "kp": pytest.approx(kp)}
-    assert "stable" in page.locator(".verdict").inner_text() and not opened.problems
+    assert "stable" in page.locator(".verdict").inner_text()
 
 
 @pytest.mark.browser
-def test_an_unstable_loop_says_what_would_calm_it(tmp_path, visit, tuner):
+def test_an_unstable_loop_says_what_would_calm_it(page_with, tuner):
     """In the page's own per cent: a little less is stable, a little more is not."""
-    url = page_of(tmp_path / "page.html", tuner)
-    page = visit(f"{url}?pidtuner=kd:100,late:20", **CALM).page
+    page = page_with(tuner, query="?pidtuner=kd:100,late:20", calm=True)
     page.wait_for_function("/%/.test(document.querySelector('.remedy').textContent)")
     remedy = page.locator(".remedy").inner_text()
     part = float(re.search(r"([\d.]+)\s%", remedy)[1]) / 100

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from widget_pages import NEXT_FRAME, assert_curves, page_of, shown_values
+from widget_pages import NEXT_FRAME, assert_curves, shown_values
 
 from workshop.chapters.widgets.weight import WANTED, OneWeight
 
@@ -41,10 +41,8 @@ def test_the_slope_is_that_of_the_error(widget):
 
 
 @pytest.mark.browser
-def test_the_page_computes_what_python_does(tmp_path, visit, widget):
-    opened = visit(page_of(tmp_path / "page.html", widget))
-    page = opened.page
-    page.evaluate(NEXT_FRAME)
+def test_the_page_computes_what_python_does(page_with, widget):
+    page = page_with(widget)
     assert_curves(page, widget.curves)
     page.locator("input[id$=weight]").press("End")
     page.locator("input[id$=size]").press("ArrowRight")
@@ -53,14 +51,11 @@ def test_the_page_computes_what_python_does(tmp_path, visit, widget):
     widget.size = page.evaluate("document.querySelector('.ddlib-weight').view.get('size')")
     assert widget.weight == 8 and widget.size > 10
     assert_curves(page, widget.curves)
-    assert not opened.problems
 
 
 @pytest.mark.browser
-def test_steps_go_downhill(tmp_path, visit, widget):
-    url = page_of(tmp_path / "page.html", widget)
-    opened = visit(f"{url}?one-weight=momentum:0.5")
-    page = opened.page
+def test_steps_go_downhill(page_with, widget):
+    page = page_with(widget, query="?one-weight=momentum:0.5")
     wanted = steps(-2.0, 10.0, 0.5, 11)
     now = "document.querySelector('.ddlib-weight').view.get('weight')"
     page.get_by_role("button", name="Step", exact=True).click()
@@ -73,14 +68,12 @@ def test_steps_go_downhill(tmp_path, visit, widget):
     page.locator("input[id$=weight]").press("ArrowLeft")  # by hand: it begins anew
     page.evaluate(NEXT_FRAME)
     assert words.inner_text() == "" and not page.locator(".walked").first.get_attribute("d")
-    assert not opened.problems
 
 
 @pytest.mark.browser
-def test_a_weight_that_runs_away_stays_in_its_range(tmp_path, visit, widget):
+def test_a_weight_that_runs_away_stays_in_its_range(page_with, widget):
     widget.weight, widget.size, widget.momentum = -1.0, 100.0, 0.9
-    opened = visit(page_of(tmp_path / "page.html", widget))
-    page = opened.page
+    page = page_with(widget)
     step, words = page.get_by_role("button", name="Step", exact=True), page.locator(".walk p")
     for _ in range(2):
         step.click()
@@ -90,4 +83,3 @@ def test_a_weight_that_runs_away_stays_in_its_range(tmp_path, visit, widget):
     page.evaluate(NEXT_FRAME)
     now = page.evaluate("document.querySelector('.ddlib-weight').view.get('weight')")
     assert words.inner_text() == "3 steps from −1.00." and 7.9 < now < 8
-    assert not opened.problems

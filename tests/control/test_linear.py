@@ -143,6 +143,9 @@ def test_limit_is_twice_friction_over_period():
     assert proportional_limit(6.5, 0.5, STEP) == pytest.approx(2 * 0.5 / STEP, rel=1e-4)
     assert proportional_limit(6.5, 0.0, STEP) == 0
     assert radius(6.5, 0.0, 1.0, STEP) > 1  # without friction no gain is stable
+    for x in (0.9e-4, 1.1e-4):  # friction times period over inertia, where the series takes over
+        limit = proportional_limit(1.0, x / STEP, STEP)
+        assert limit / (2 * x / STEP**2) == pytest.approx(1 + x / 6, abs=1e-8)
 
 
 def test_stiffness_pulls_back_to_the_posture():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.collections import PathCollection
 from matplotlib.colors import to_hex
-from pictures import boxes, drawn
+from pictures import boxes, check, drawn
 
 from ddlib.figures import decomposed
 
@@ -19,7 +19,8 @@ ROWS = {
 
 @pytest.mark.parametrize("given", [ROWS["rough"], ROWS])
 def test_curves_are_a_row_and_parts_that_add_up_to_it(given):
-    _, figure = drawn(lambda: decomposed(given, 0.02))
+    picture, figure = drawn(lambda: decomposed(given, 0.02))
+    check(picture, figure, upon="#ffffff")
     rows = given if isinstance(given, dict) else {"": given}
     assert len(figure.axes) == len(rows)
     for axis, (title, f) in zip(figure.axes, rows.items()):

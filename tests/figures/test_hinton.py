@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from pictures import boxes, drawn
+from pictures import boxes, check, drawn
 
 from ddlib.figures import COLOURS, hinton
 from ddlib.figures.weights import hinton_on, relative_weights
@@ -35,7 +35,8 @@ def squares(diagram, weights) -> tuple[np.ndarray, np.ndarray]:
 
     y runs downwards.
     """
-    _, figure = drawn(lambda: diagram(weights))
+    picture, figure = drawn(lambda: diagram(weights))
+    check(picture, figure, upon="#ffffff")
     marks = []
     for sign, colour in ((1, "#ffffff"), (-1, "#000000")):
         for left, bottom, right, top in boxes(figure, colour):

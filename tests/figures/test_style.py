@@ -7,6 +7,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
+from matplotlib.colors import rgb_to_hsv, to_rgb
 from pictures import SVG, black_or_white, check_sound, drawn, ids, size, words
 from PIL import Image
 from pypdf import PdfReader
@@ -47,6 +48,9 @@ def test_colours_are_seen_in_light_and_in_dark_and_never_the_only_difference():
     for colour in (*COLOURS, FAINT):
         assert contrast(colour, "#ffffff") >= 3 and contrast(colour, "#121212") >= 3
     assert len(DASHES) == len(COLOURS) == len(set(COLOURS)) == len(set(map(str, DASHES)))
+    hues = rgb_to_hsv([to_rgb(colour) for colour in COLOURS])[:, 0]
+    # captions call them so: orange, ochre, green, blue, violet, pink
+    assert np.argsort(hues).tolist() == [1, 5, 2, 0, 4, 3]
 
 
 @pytest.mark.parametrize("make", [draw, formulas])

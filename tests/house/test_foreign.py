@@ -24,11 +24,3 @@ def test_jogs_multiply_every_real_draw_and_leave_integers(tmp_path):
     plain, jogged = plain.stdout.split(), jogged.stdout.split()
     assert [float(x) for x in jogged[:12]] == [float(x) * (1 + 7e-9) for x in plain[:12]]
     assert jogged[12:] == plain[12:]
-
-
-def test_what_holds_and_what_fails_is_told(monkeypatch, capfd):
-    for code, outcome in (("pass", "all hold"), ("raise SystemExit(1)", "jog-1: claims")):
-        run = {"claims": ["-c", code]}
-        monkeypatch.setattr(foreign, "commands", lambda jobs, ci, run=run: run)
-        assert foreign.main(["jog-1", "--jobs", "1"]) == (outcome != "all hold")
-        assert f"1 foreign machine: {outcome}" in capfd.readouterr().out

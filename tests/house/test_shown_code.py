@@ -38,5 +38,3 @@ def test_names_in_shown_code_exist():
     codes = {code for source in sources for code in shown(source)}
     assert len(codes) >= 10
     assert not [name for code in codes for name in missing(code)]
-    code = "from workshop.report.studies.page import training as page\npage.nothing({x})"
-    assert missing(shown(repr(code))[0]) == ["workshop.report.studies.page.training.nothing"]

@@ -40,9 +40,6 @@ def test_cases_pair_each_window_with_the_torque_at_its_centre():
     assert made.step == recording.step
 
 
-# --- what does not belong together ----------------------------------------------------
-
-
 # --- history ----------------------------------------------------------------------------
 
 

@@ -4,7 +4,6 @@ import hashlib
 import json
 
 import chromium
-import firefox
 import live_pages
 import numpy as np
 import pytest
@@ -62,16 +61,6 @@ def test_a_reader_changes_a_cell_and_goes_back(browser, site):
 @pytest.mark.parametrize("page", WALK)
 def test_open_cells_run_through_in_the_page(browser, site, page):
     live_pages.runs_through(browser.new_page(), site, page)
-
-
-@pytest.mark.browser
-@pytest.mark.slow
-def test_a_lesson_runs_through_in_firefox_too(playwright, site):
-    """Wherever one is installed; `make firefox` has all lessons run in it."""
-    if firefox.find() is None:
-        pytest.skip(firefox.HOW_TO_GET_ONE)
-    with firefox.launched(playwright) as browser:
-        live_pages.runs_through(browser.new_page(), site, "book/feedback")
 
 
 def marked(tab) -> list[str]:

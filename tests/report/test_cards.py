@@ -29,14 +29,12 @@ def test_every_row_is_in_one_card():
     assert named == Counter(claim.id for claim in ALL if claim.id not in listed)
 
 
-def test_cards_are_short():
+def test_cards_are_of_their_kind():
     found = cards._cards()
     assert len({card.id for card in found}) == len(found)
     for card in found:
-        assert card.deciding and len(card.says.split()) <= 16, card.id
-        quoted = " ".join(re.findall("“(.*?)”", card.says)).split()
-        assert len(quoted) <= 13, card.id
         paper = [c for c in card.deciding if c.printed != claims.NOT_IN_PAPER]
+        assert card.deciding, card.id
         assert card.kind == "own" or len(paper) == len(card.deciding), card.id
 
 

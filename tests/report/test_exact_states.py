@@ -1,11 +1,9 @@
 """States of the simulated arm: the cube, a trajectory, the torque."""
 
 import numpy as np
-import pytest
 
-from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
 from ddlib.trajectories import pick_and_place
-from workshop.report.exact_states import RADIUS, random_states, states_along, torque
+from workshop.report.exact_states import RADIUS, random_states, states_along
 
 
 def test_random_states_fill_the_cube():
@@ -22,10 +20,3 @@ def test_states_along_a_trajectory_are_its_samples():
     motion = pick_and_place((39.5, 14.4), np.arange(300) * 0.01)
     for k, series in enumerate(motion):
         np.testing.assert_allclose(states[..., k], series, atol=1e-12)
-
-
-@pytest.mark.parametrize("arm", [CMU_DD_ARM_II, REYES_KELLY_ARM])
-def test_torque_is_the_inverse_dynamics(arm):
-    states = random_states(50)
-    for state, found in zip(states, torque(states, arm)):
-        np.testing.assert_allclose(found, arm.inverse_dynamics(*state.T), rtol=1e-12)

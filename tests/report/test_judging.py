@@ -2,6 +2,7 @@
 
 import os
 import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -31,6 +32,13 @@ def test_measured_now_each_claim_has_its_written_verdict_and_the_kept_value():
     assert {c.id: c.verdict for c in MEASURED} == {k: e.split(": ")[0] for k, e in kept.items()}
     changes = judging.changes(MEASURED, kept)
     assert not changes, "\n".join([AGAIN, *changes])
+
+
+def test_it_runs_as_contributing_says():
+    """With an option that there is not, as judging takes a minute."""
+    called = [sys.executable, "-m", judging.__name__, "--there-is-not"]
+    told = subprocess.run(called, capture_output=True, text=True, check=False)
+    assert told.returncode == 2 and "--write" in told.stderr
 
 
 @pytest.fixture

@@ -88,19 +88,13 @@ def test_the_short_window_turns_where_parabolas_say():
     assert 11 < bits < 13
 
 
-@pytest.fixture
-def made(monkeypatch):
-    """``made(NAME=content)``: committed results as planted."""
-    return lambda **planted: monkeypatch.setattr(windows.results, "read", planted.__getitem__)
-
-
-def test_courses_of_training_by_hand(made):
+def test_courses_of_training_by_hand(planted_results):
     cell = {"errors": {"test": [1.0, 2.0]}, "best test": [1.0, 1.0]}
     weights = {"21": [8.0, 8.0, 9.0], "41": [2.0, 4.0, 6.0], "11": [1.0]}
     cells = {w: {**cell, "largest weight": weights[w]} for w in weights}
     rows = [{"width": w, "training": [e]} for w, e in ((3, 3.0), (5, 2.0), (7, 2.5))]
     history = {"training": [[4.0, 3.0, 3.5, 1.0]]}
-    made(
+    planted_results(
         **{"table-4-1": {"setups": {STATE_FEEDBACK.name: cells}}, "window-sizes": {"rows": rows}},
         longer={"windows": {"21": {"history": history}}},
     )
@@ -110,12 +104,14 @@ def test_courses_of_training_by_hand(made):
     assert windows.training_is_monotone().value == pytest.approx(2 / 3)
 
 
-def test_directions_by_hand(made):
+def test_directions_by_hand(planted_results):
     """A cell for each window with inputs of 0 to 1, then for each with -1 to 1."""
     errors = [4.0, 8.0, 16.0, 2.0, 2.0, 2.0]
     some = [{"rmss": [e], "halves": [[10.0, 40.0, 80.0]], "learnt": [2]} for e in errors]
-    kept = {"start kept": [0.7, 0.8, 0.95], "variance": [1.0] * 3}
-    made(span={"cells": [{"measured": x, "predicted": x, **kept} for x in some]})
+    kept = [{"start kept": [0.7, k / 10, 0.95], "variance": [1.0] * 3} for k in (9, 9, 8, 7, 7, 7)]
+    planted_results(
+        span={"cells": [{"measured": x, "predicted": x, **y} for x, y in zip(some, kept)]}
+    )
     assert windows.centred().value == 2.0  # the least of three ratios
     assert windows.halved([1, 2], [3]).value == pytest.approx(4.0)  # 80 over the mean of 10 and 40
     assert windows.noise_left(41).value == 0.8

@@ -128,13 +128,14 @@ def drive(arm=ARM, log_step=CONTROL_STEP, **parts):
     return record(arm, pd(KP, KD), APPENDIX_I[5], effects=Effects(**parts), log_step=log_step)
 
 
-def test_friction_is_what_is_left():
+@pytest.mark.parametrize("late, within", [((), 2e-6), ((ComputingTime(0.0006),), 1e-3)])
+def test_friction_is_what_is_left(late, within):
     for friction in (ViscousFriction((0.5, 0.15)), CoulombFriction((0.5, 0.15))):
-        run = drive(friction=(friction,))
+        run = drive(friction=(friction,), actuator=late)
         middle = (run.qd_true[1:] + run.qd_true[:-1]) / 2
         steady = np.abs(middle).min(-1) > 0.02
         left = residual_torque(ARM, run)
-        np.testing.assert_allclose(left[steady], friction.torque(middle)[steady], atol=2e-4)
+        np.testing.assert_allclose(left[steady], friction.torque(middle)[steady], 0, within)
 
 
 @pytest.mark.parametrize("period", [0.001, 0.004])

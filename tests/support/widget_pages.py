@@ -92,13 +92,6 @@ def phone(browser, url, **options):
     context.close()
 
 
-def opened(tmp_path, visit, widget, query="", **options):
-    """A page with a widget, for a reader who wants no motion."""
-    here = visit(f"{page_of(tmp_path / 'page.html', widget, **options)}{query}", **CALM)
-    here.page.evaluate(NEXT_FRAME)
-    return here
-
-
 def write(field, text: str) -> None:
     """As a hand would: Playwright's `fill` adds to what Firefox has in a field for numbers."""
     field.press("ControlOrMeta+a")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from traitlets import TraitError
-from widget_pages import BRIDGE, CALM, NEXT_FRAME, copied, page_of
+from widget_pages import BRIDGE, NEXT_FRAME, copied
 from widget_samples import make, sample_of, widget_kinds
 
 by_kind = pytest.mark.parametrize("kind", widget_kinds(), ids=lambda kind: kind.__name__)
@@ -61,13 +61,10 @@ def by_keyboard(page) -> str:
 
 @in_browser
 @by_kind
-def test_the_state_is_a_link_and_reset_is_the_start(tmp_path, visit, kind):
+def test_the_state_is_a_link_and_reset_is_the_start(page_with, kind):
     """By keys alone; what is copied as code is Python."""
-    url = page_of(tmp_path / "page.html", sample_of(kind))
-    here = visit(url, **CALM)
-    page = here.page
-    page.evaluate(NEXT_FRAME)
-    start = page.evaluate(SHOWN)
+    page = page_with(sample_of(kind), calm=True)
+    url, start = page.url, page.evaluate(SHOWN)
     link = by_keyboard(page)
     changed = page.evaluate(SHOWN)
     # ThrownArm has a bar of its own, which keeps the book's first page light: the address does not
@@ -82,7 +79,6 @@ def test_the_state_is_a_link_and_reset_is_the_start(tmp_path, visit, kind):
     assert copied(page, "Link") == link
     if page.get_by_role("button", name="Code").count():
         compile(copied(page), "code", "exec")
-    assert not here.problems
 
 
 # Every choice at the other end of its range, as Python could set it at once.
@@ -114,10 +110,9 @@ def every():
 
 @in_browser
 @pytest.mark.parametrize("hidden", [False, True], ids=["shown", "in a tab behind"])
-def test_a_trait_may_be_set_before_there_is_a_size(tmp_path, visit, every, hidden):
+def test_a_trait_may_be_set_before_there_is_a_size(page_with, every, hidden):
     extra = f"{HIDE if hidden else ''}<script>{CHANGES}</script>{BRIDGE}"
-    here = visit(page_of(tmp_path / "page.html", *every, extra=extra), **CALM)
-    page = here.page
+    page = page_with(*every, extra=extra, calm=True)
     page.wait_for_function(REACHED)
     if hidden:
         page.evaluate(SHOW)
@@ -125,4 +120,4 @@ def test_a_trait_may_be_set_before_there_is_a_size(tmp_path, visit, every, hidde
     page.wait_for_function(f"{EMPTY} === 0")
     assert not page.locator(".ddlib-widget-error").all_inner_texts()
     assert page.locator("main > div.ddlib-widget").count() == len(every)
-    assert page.locator(".chart > svg").count() > 20 and not here.problems
+    assert page.locator(".chart > svg").count() > 20

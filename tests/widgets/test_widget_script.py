@@ -10,7 +10,6 @@ from widget_pages import (
     READ,
     assert_curves,
     functions,
-    page_of,
     settings,
     shown_values,
 )
@@ -88,9 +87,8 @@ def test_script_reads_choices(call, waves):
 # In a page without a kernel
 
 
-def test_every_control_of_a_choice(tmp_path, visit, waves):
-    opened = visit(page_of(tmp_path / "page.html", waves))
-    page = opened.page
+def test_every_control_of_a_choice(page_with, waves):
+    page = page_with(waves)
     drawn = [page.evaluate(PATHS)]
 
     def changed():
@@ -113,12 +111,11 @@ def test_every_control_of_a_choice(tmp_path, visit, waves):
     np.testing.assert_allclose(line[0], 1, atol=0.06)  # the fixed curve is drawn first
     stems = page.evaluate(READ, 1)
     np.testing.assert_allclose(stems[1], exact["taps"], atol=0.2)
-    assert not opened.problems
 
 
-def test_a_slider_without_a_kernel_steps_over_the_grid(tmp_path, visit):
+def test_a_slider_without_a_kernel_steps_over_the_grid(page_with):
     widget = make()
-    page = visit(f"{page_of(tmp_path / 'page.html', widget)}?curve-widget=decay:0.93,gain:4").page
+    page = page_with(widget, query="?curve-widget=decay:0.93,gain:4")
     gain, decay = (page.get_by_role("slider", name=name) for name in ("Gain", "Decay"))
     assert shown_values(page) == [10, 0.9, 0]  # the nearest points
     assert (gain.get_attribute("max"), decay.get_attribute("max")) == ("2", "20")

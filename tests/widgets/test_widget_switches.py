@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from widget_pages import assert_curves, page_of
+from widget_pages import assert_curves
 
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II
@@ -75,16 +75,15 @@ def assert_shown(page, switches, **levels):
 
 
 @pytest.mark.browser
-def test_switches_alone_and_all(tmp_path, visit, switches):
+def test_switches_alone_and_all(page_with, switches):
     """By mouse and keyboard; the axes stay as they are."""
-    url = page_of(tmp_path / "page.html", switches)
     weak = {"friction": "assumed", "dead_zone": "weak", "saturation": "weak", "delay": "weak"}
     strong = dict.fromkeys(("friction", "saturation", "quantisation", "delay"), "strong")
     for levels in (OFF | weak, OFF | strong):
         query = ",".join(f"{name}:{level}" for name, level in levels.items())
-        assert_shown(visit(f"{url}?real-arm-switches={query}").page, switches, **levels)
-    opened = visit(url)
-    page = opened.page
+        page = page_with(switches, query=f"?real-arm-switches={query}")
+        assert_shown(page, switches, **levels)
+    page = page_with(switches)
     assert_shown(page, switches)
     axes = page.locator(".chart svg text.y").all_inner_texts()
     page.get_by_role("switch", name="Torque limit").press("Space")
@@ -98,4 +97,3 @@ def test_switches_alone_and_all(tmp_path, visit, switches):
     page.get_by_role("button", name="All on").click()
     page.wait_for_function("document.querySelectorAll('[role=switch]:checked').length === 5")
     assert page.locator(".chart svg text.y").all_inner_texts() == axes
-    assert not opened.problems

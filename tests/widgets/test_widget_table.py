@@ -79,9 +79,3 @@ def test_what_the_page_computes_has_no_room_and_may_end():
         live=Live(["own"]),
     )  # fmt: skip
     assert mixed.baked_bytes == 2 * 3 * 41 and list(mixed.at_grid()) == ["baked"]
-
-
-def test_a_table_that_would_be_too_heavy_for_a_page_is_refused():
-    for grid, words in ((6501, "at most 500000 baked bytes"), (200_000, "at most 6000000 values")):
-        with pytest.raises(ValueError, match=words):
-            tabled(lambda a: {"y": a * T}, [Parameter("a", "a", 0, 1, 0, grid=grid)])

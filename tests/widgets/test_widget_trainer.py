@@ -18,7 +18,6 @@ from widget_pages import (
     flat,
     functions,
     linked,
-    opened,
     page_of,
     write,
 )
@@ -183,9 +182,8 @@ LOCKED = "Train (guess first)"
 
 
 @pytest.mark.browser
-def test_nothing_moves_before_a_guess(tmp_path, visit, widget):
-    here = opened(tmp_path, visit, widget)
-    page = here.page
+def test_nothing_moves_before_a_guess(page_with, widget):
+    page = page_with(widget, calm=True)
     for name in (LOCKED, "Step"):
         assert page.get_by_role("button", name=name, exact=True).is_disabled()
     assert page.evaluate(STATE)["epoch"] == 0
@@ -201,18 +199,17 @@ def test_nothing_moves_before_a_guess(tmp_path, visit, widget):
     page.get_by_label("Torques").select_option("shifted")
     assert page.evaluate(STATE)["epoch"] == 0
     assert page.get_by_role("button", name=LOCKED, exact=True).is_disabled()
-    assert not here.problems
 
 
 @pytest.mark.browser
-def test_a_link_restores_settings_and_epoch(tmp_path, visit, widget):
+def test_a_link_restores_settings_and_epoch(page_with, widget):
     query = "?trainer=seed:2,inputs:centred,momentum:0.9,guess:2,epoch:40"
-    page = opened(tmp_path, visit, widget, query).page
+    page = page_with(widget, query=query, calm=True)
     page.wait_for_function(REACHED % 40)
     page.get_by_role("button", name="Step").click()
     wanted = page.evaluate(STATE)
     page.wait_for_function("location.search.includes('epoch:41')")
-    again = opened(tmp_path, visit, widget, page.evaluate("location.search")).page
+    again = page_with(widget, query=page.evaluate("location.search"), calm=True)
     again.wait_for_function(REACHED % 41)
     assert again.evaluate(STATE) == wanted
     rate = f"{trainer.default_rate(21):.12g}"
@@ -221,11 +218,10 @@ def test_a_link_restores_settings_and_epoch(tmp_path, visit, widget):
 
 
 @pytest.mark.browser
-def test_a_readers_own_experiment(tmp_path, visit, capsys):
+def test_a_readers_own_experiment(page_with, capsys):
     """Other extents, recorded and learnt in the page: error and inertia of the code it copies."""
     widget = NetworkTrainer(epochs=400, code=code_of("window-networks", "TRAINER_CODE"))
-    here = opened(tmp_path, visit, widget)
-    page = here.page
+    page = page_with(widget, calm=True)
     recorded = page.locator(".recorded")
     assert "Appendix I" in recorded.inner_text()
     write(page.get_by_label("shoulder in trajectory 1"), "30.5")
@@ -255,7 +251,6 @@ def test_a_readers_own_experiment(tmp_path, visit, capsys):
     page.get_by_role("button", name="Appendix I").click()
     page.get_by_role("button", name="Record and train").click()
     assert "Appendix I" in recorded.inner_text()
-    assert not here.problems
 
 
 # Driven from Python
@@ -268,14 +263,6 @@ def driven(browser, tmp_path_factory):
     url = page_of(tmp_path_factory.mktemp("driven") / "page.html", trainer_, extra=BRIDGE)
     with linked(browser, url, trainer_) as (page, settle):
         yield trainer_, page, settle
-
-
-def test_there_are_no_results_before_a_page_has_computed_them(widget):
-    traits = ("weights", "model", "error", "training_error", "inertia")
-    assert [getattr(widget, name) for name in traits] == [None] * 5
-    for name in traits:
-        with pytest.raises(TraitError, match="read-only"):
-            setattr(widget, name, None)
 
 
 @pytest.mark.browser

@@ -85,14 +85,13 @@ def test_widgets_keep_to_the_recordings_step():
     course = replace(models[21], weights=Weights.stack(moved))
     player = TrainingPlayer([0, 1, 2], course, log)
     for widget, panel in ((sliding, 0), (hidden, 1), (explorer, 0), (player, 0)):
-        times = widget._panels[panel].x
+        times = widget.spec["panels"][panel]["x"]
         np.testing.assert_allclose(np.diff(times), 1e3 * step, rtol=1e-6)
-    (gain,) = (p for p in explorer._panels if p.y_label == "Gain")
-    assert max(gain.x) == pytest.approx(0.2 / step)
+    (gain,) = (p for p in explorer.spec["panels"] if p["y_label"] == "Gain")
+    assert max(gain["x"]) == pytest.approx(0.2 / step)
     unknown = {w: replace(model, step=None) for w, model in models.items()}
     with pytest.raises(ValueError, match="give step, in s"):
         FilterExplorer(unknown, (0, 1))
-    assert FilterExplorer(unknown, (0, 1), step=step)._step == step
     with pytest.raises(ValueError, match=r"sampling period of 0\.01 s"):
         FilterExplorer(models, (0, 1), step=0.01)
     with pytest.raises(ValueError, match="sampling period"):

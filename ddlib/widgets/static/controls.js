@@ -98,7 +98,7 @@ export function padOf(view) {
   const groups = [...new Set(pad.marks.map((mark) => mark.group))];
   const shape = (group) => {
     const k = groups.indexOf(group);
-    return { d: SHAPES[k % SHAPES.length], class: `mark c${k % 6}` };
+    return { d: SHAPES[k % SHAPES.length], class: `mark c${k % SHAPES.length}` };
   };
   const under = make("g", { class: "under" }); // for a subclass
   const handle = make("g", { class: "handle" }, make("circle", { r: 10 }), make("circle", { r: 2 }));

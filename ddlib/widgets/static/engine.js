@@ -202,3 +202,12 @@ export function scaledWindow({ net, inputs }, window) {
 // Torques (N m) of output activities.
 export const torqueOfOutput = ({ outputs: { low, gain, first } }, output) =>
   JOINTS.map((j) => low[j] + (output[j] - first) / gain[j]);
+
+// A law whose torque comes some control periods late; zero until its first comes.
+export function behind(periods, law) {
+  const waiting = Array.from({ length: periods }, () => [0, 0]);
+  return (...seen) => {
+    waiting.push(law(...seen));
+    return waiting.shift();
+  };
+}

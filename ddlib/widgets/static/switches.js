@@ -2,8 +2,7 @@
 
 import { computes, extras } from "./curves.js";
 import { buttonOf, make } from "./elements.js";
-import { NAMES, follow, pid, referenceOf } from "./engine.js";
-import { behind } from "./loops.js";
+import { NAMES, behind, follow, pid, referenceOf } from "./engine.js";
 
 const DEGREES = 180 / Math.PI;
 

@@ -2,7 +2,7 @@
 
 import { buttonOf, dress, make, onKeys, put, write } from "ddlib/elements.js";
 import { filled, frameOf, python } from "ddlib/frame.js";
-import { growthOf } from "ddlib/loops.js";
+import { growthOf } from "./loops.js";
 import { format } from "ddlib/numbers.js";
 import { armTorque } from "ddlib/physics.js";
 

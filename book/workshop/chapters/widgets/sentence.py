@@ -15,12 +15,12 @@ from ddlib.figures import illustrate
 from ddlib.setups import JOINT_DAMPING_KP as KP, JOINT_DAMPING_VISCOUS
 from ddlib.simulation import CONTROL_STEP
 from ddlib.widgets.base import PageWidget
-from ddlib.widgets.engine._loops import linear, modes
 from ddlib.widgets.engine._plain import plant
 from ddlib.widgets.parts._common import key_of
 from ddlib.widgets.parts.parameters import Parameter
 from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.still import START, encoded
+from workshop.chapters.widgets.loops import linear, modes
 
 _HERE = Path(__file__).parent
 

@@ -3,8 +3,8 @@
 import { clockOf } from "ddlib/clock.js";
 import { computes, extras } from "ddlib/curves.js";
 import { buttonOf, make, write } from "ddlib/elements.js";
-import { JOINTS, NAMES, feedforward, pid, referenceOf } from "ddlib/engine.js";
-import { behind, calmPart, growthOf, guarded, marginOf } from "ddlib/loops.js";
+import { JOINTS, NAMES, behind, feedforward, pid, referenceOf } from "ddlib/engine.js";
+import { calmPart, growthOf, guarded, marginOf } from "./loops.js";
 import { armsOf } from "./stage.js";
 
 const PAUSE = 800; // ms without a change after which a setting is the one before the next

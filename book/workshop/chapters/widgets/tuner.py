@@ -16,12 +16,12 @@ from ddlib.setups import JOINT_DAMPING_KP as KP, JOINT_DAMPING_VISCOUS
 from ddlib.simulation import CONTROL_STEP, LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
 from ddlib.widgets.base import CurveWidget
-from ddlib.widgets.engine._loops import controller, linear, modes, run
 from ddlib.widgets.engine._plain import plant
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice, Parameter
 from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.table import Live
+from workshop.chapters.widgets.loops import controller, linear, modes, run
 
 _HERE = Path(__file__).parent
 

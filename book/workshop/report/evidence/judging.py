@@ -129,5 +129,5 @@ def main(arguments=None) -> int:
     return bool(wrong)
 
 
-if __name__ == "_main__":
+if __name__ == "__main__":
     raise SystemExit(main())

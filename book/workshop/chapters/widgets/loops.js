@@ -1,16 +1,6 @@
-// PID loops whose torque may come late: their runs, and the linear loop around a posture. `modes` is
-// what engine/_loops.py writes.
+// PID loops: their runs, and the linear loop around a posture. `modes` is what loops.py writes.
 
-import { JOINTS, drive } from "./engine.js";
-
-// A law whose torque comes some control periods late; zero until its first comes.
-export function behind(periods, law) {
-  const waiting = Array.from({ length: periods }, () => [0, 0]);
-  return (...seen) => {
-    waiting.push(law(...seen));
-    return waiting.shift();
-  };
-}
+import { JOINTS, drive } from "ddlib/engine.js";
 
 // Follow a reference; the run is over at the first logged sample with a joint's error beyond `most`
 // (rad), whose place `stopped` then is.

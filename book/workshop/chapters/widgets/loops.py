@@ -1,6 +1,6 @@
 """PID loops as the page computes them: runs that may be stopped, and the linear loop around them.
 
-The script is ``static/loops.js``; what stands here is the same by `ddlib` and python-control, for
+The script is ``loops.js``; what stands here is the same by `ddlib` and python-control, for
 tests and for the still picture.
 """
 
