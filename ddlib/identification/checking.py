@@ -333,13 +333,18 @@ def _other_readings(pieces, width, fit) -> Iterator[Finding]:
 def _torque_spikes(recording, pieces, width, fit) -> Iterator[Finding]:
     """Single torques that stand alone, and did not act on the arm: the equations leave them over.
 
-    A torque that jumps for one sample may be a true one, as where a plan's velocity jumps.
+    A torque that jumps for one sample may be a true one, as where a plan's velocity jumps, or where
+    a joint turns back against its dry friction.
     """
     anywhere = _fit(pieces, width, [name for name in EVERY if name[:-1] != "F_c"])  # slow, too
     for joint in range(2):
         every = recording.tau[:, recording.motion, joint]
+        angles = recording.q[:, recording.motion, joint]
         found = [(n, run, row) for run, tau in enumerate(every) for row, n in zip(*spikes(tau))]
         for size, run, row in sorted(found, reverse=True)[:3]:
+            near = angles[run, max(row - 4, 0) : row + 5]
+            if np.ptp(near) > 1.5 * abs(near[-1] - near[0]):  # it turns back
+                continue
             one = np.zeros_like(recording.tau)
             one[run, recording.motion.start + row, joint] = size
             one = _pieces(_thinned(replace(recording, tau=one)), width)
@@ -349,7 +354,7 @@ def _torque_spikes(recording, pieces, width, fit) -> Iterator[Finding]:
                 spike = _averaged(one, names, width)
                 spike = spike.torque[joint]
                 seen = np.linalg.norm(spike) > 3 * model.estimate.noise[joint]
-                if seen and 0.5 < (spike @ left) / (spike @ spike) < 2:
+                if seen and 0.5 < abs(spike @ left) / (spike @ spike) < 2:
                     yield Finding(
                         "torque spike", "wrong", run, joint,
                         f"One torque is off by {size:.3g} N m.",

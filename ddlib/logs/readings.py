@@ -175,7 +175,7 @@ def _angle(q, tau, step, name) -> Iterator[Finding]:
     for begin, end, how in lost:  # a line across what was lost, so that its ends are no spikes
         inside = np.arange(begin + (how == "held"), end)
         whole[inside] = np.interp(inside, [inside[0] - 1, end], whole[[inside[0] - 1, end]])
-    yield from _spikes(whole, 0.01 * np.ptp(whole))
+    yield from _spikes(whole, max(0.01 * np.ptp(whole), 1e-3))
 
 
 def _spikes(x, least) -> Iterator[Finding]:

@@ -103,7 +103,7 @@ def turned(shoulder, elbow):
 
 
 def spiked(tau):
-    tau[1, tau.shape[1] // 2, 0] += 4 * tau[..., 0].std()
+    tau[1, tau.shape[1] // 2, 0] -= 4 * tau[..., 0].std()
     return tau
 
 
