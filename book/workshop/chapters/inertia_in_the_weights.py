@@ -12,7 +12,7 @@ from ddlib.analysis import gains, mean_gradient
 from ddlib.dynamics import IMI_ARM, with_load
 from ddlib.figures.style import COLOURS, INK, Illustration, illustrate
 from ddlib.learning import TorqueModel, Weights, cases
-from ddlib.setups import INITIAL, JOINT_DAMPING, split, true_states
+from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, split, true_states
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote, scientific
 from workshop.chapters import excitation, planted
@@ -182,6 +182,11 @@ def _quoted() -> None:
         quote(f"inertia-knob-{name}", answers.mean())
         quote(f"inertia-knob-{name}-least", answers.min())
         quote(f"inertia-knob-{name}-most", answers.max())
+    names = {"unedited": "unedited", "written": "written", "retrained": "retrained",
+             "turned": "turned sign", "factor": "one factor"}  # fmt: skip
+    for name, model in names.items():
+        quote(f"inertia-load-{name}", planted.loaded(JOINT_DAMPING.name, model))
+        quote(f"inertia-load-{name}-state", planted.loaded(STATE_FEEDBACK.name, model))
     row, whole = paths()[_carried()], paths().sum(0)
     for name, values in {"row": row, "row-network": whole}.items():
         quote(f"inertia-{name}", values[2])

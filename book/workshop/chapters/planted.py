@@ -48,6 +48,13 @@ def every(kind: str, what: str) -> np.ndarray:
     return np.asarray(of_kinds()[kind]["every"][what])
 
 
+def loaded(reading: str, model: str) -> float:
+    """RMSS of networks, or what else, on trajectory 6 of the arm with 3 kg in its hand."""
+    wanted = {"reading": reading, "width": 21, "method": "descent"}
+    (row,) = (x for x in results.read("written")["rows"] if x["setting"] == wanted)
+    return float(np.mean(row["changes"]["3 kg"]["error"][model]["mean"]))
+
+
 def shapes_and_sizes() -> Illustration:
     """Shapes, sizes and answers of networks, by the torques that they learnt."""
     own = float(of_kinds()["the arm"]["truth"][0][0][2])
