@@ -9,6 +9,8 @@ import numpy as np
 
 from ddlib._check import filled, finite_array, instance, integer, non_negative, number, told
 
+_CLOSE = 1e-4  # relative, of a gain to 1 and of a phase to -180 degrees
+
 
 def plant(inertia, viscous, stiffness=0.0) -> control.StateSpace:
     """Joints that obey ``inertia qdd + viscous qd + stiffness q = tau``: torques in, state out.
@@ -167,12 +169,15 @@ def margins(loop) -> Margins:
         loop = control.ss(A, B, C, loop.D - loop.C @ inverse @ loop.B)
     mirrored = control.ss(-loop.A, loop.B, -loop.C, loop.D)  # the loop at -w
     crossovers = _on_the_axis(loop * mirrored - 1)
+    crossovers = crossovers[np.abs(np.abs(loop(1j * crossovers)) - 1) < _CLOSE]
     if not crossovers.size:
         raise ValueError("loop must have a gain of 1 at some frequency, got none")
     phases = np.angle(-loop(1j * crossovers), deg=True)
     k = np.argmin(np.abs(phases))
     # it is real there, at frequency 0, and at w of infinity, the highest that samples can show
-    real = np.real([*loop(1j * _on_the_axis(loop - mirrored)), loop.dcgain(), loop.D[0, 0]])
+    turned = loop(1j * _on_the_axis(loop - mirrored))
+    turned = turned[np.abs(turned.imag) < _CLOSE * np.abs(turned)]
+    real = np.real([*turned, loop.dcgain(), loop.D[0, 0]])
     gains = -1 / real[np.isfinite(real) & (real < 0)]
     crossover = 2 / period * np.arctan(crossovers[k]) if period else crossovers[k]
     upper, lower = min(gains[gains > 1], default=np.inf), max(gains[gains < 1], default=0.0)
@@ -180,9 +185,9 @@ def margins(loop) -> Margins:
 
 
 def _on_the_axis(system) -> np.ndarray:
-    """Zeros of a system that lie on the positive imaginary axis: their imaginary parts."""
+    """Zeros of a system that lie near the positive imaginary axis: their imaginary parts."""
     zeros = control.zeros(system)
-    return zeros.imag[(np.abs(zeros.real) < 1e-6 * np.abs(zeros)) & (zeros.imag > 0)]
+    return zeros.imag[(np.abs(zeros.real) < 1e-3 * np.abs(zeros)) & (zeros.imag > 0)]
 
 
 def proportional_limit(inertia, viscous, period) -> float:

@@ -138,7 +138,7 @@ def _warn_of_weight(names, columns, torques, kept) -> None:
 
     Each joint has an offset in any case.
     """
-    size = [tau[keep].std() for tau, keep in zip(torques, kept)]
+    size = [tau[keep].std() if keep.any() else 0.0 for tau, keep in zip(torques, kept)]
     if not min(size) > 0:
         return
     y = np.concatenate([tau[keep] / s for tau, keep, s in zip(torques, kept, size)])

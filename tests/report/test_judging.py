@@ -37,7 +37,8 @@ def test_measured_now_each_claim_has_its_written_verdict_and_the_kept_value():
 def test_it_runs_as_contributing_says():
     """With an option that there is not, as judging takes a minute."""
     called = [sys.executable, "-m", judging.__name__, "--there-is-not"]
-    told = subprocess.run(called, capture_output=True, text=True, check=False)
+    here = results.FOLDER.parent  # `book`
+    told = subprocess.run(called, cwd=here, capture_output=True, text=True, check=False)
     assert told.returncode == 2 and "--write" in told.stderr
 
 

@@ -19,7 +19,7 @@ X = LOG_STEP * (np.arange(WIDTH) - WIDTH // 2)
 
 @pytest.fixture(scope="module")
 def day():
-    setup = replace(JOINT_DAMPING, steps=0, decay=0.0, warm_up=50, epochs=1000)
+    setup = replace(JOINT_DAMPING, steps=0, decay=0.0, warm_up=500, epochs=4000)
     return known_torques.Day(setup.repeated(3), WIDTH)
 
 
@@ -50,7 +50,7 @@ def test_what_is_written_by_pencil_is_read_and_answers_the_knobs(day):
 
 
 def test_held_direct_weights_keep_their_half_and_hidden_units_add_the_other(day):
-    """A short descent: K and B are read within a fifth of their largest entry, M within .35."""
+    """Within a quarter of the largest entry: the study finds 18 %, no finding would be a half."""
     kind = study.control_kind(day)
     half = study.by_pencil(day, kind, 0.5, 2, seed=7)
     model = study.hidden_trained(day, kind, half)
@@ -59,8 +59,8 @@ def test_held_direct_weights_keep_their_half_and_hidden_units_add_the_other(day)
     direct = calibrated(model, day.windows, LOG_STEP).direct
     assert np.abs(direct - study.CONTROL / 2).max((0, 1, 2)) / largest == pytest.approx(0, abs=0.1)
     read = gains(mean_gradient(model, day.windows), LOG_STEP)
-    assert (np.abs(read - study.CONTROL).max((0, 1, 2)) / largest < [0.2, 0.2, 0.35]).all()
-    assert np.abs(read - direct)[:, 0, 0, 2].min() > 0.2 * study.CONTROL[0, 0, 2]
+    assert np.abs(read - study.CONTROL).max((0, 1, 2)) / largest == pytest.approx(0, abs=0.25)
+    assert (read - direct)[:, 0, 0, 2].min() > 0.3 * study.CONTROL[0, 0, 2]
 
 
 def test_networks_tell_the_arm_from_a_spring_by_size_and_knob(day, kinds):

@@ -11,7 +11,7 @@ from functools import cache
 
 import numpy as np
 
-from ddlib.learning import TorqueModel, TrainingSet, Weights
+from ddlib.learning import TorqueModel, TrainingSet, Weights, cases
 from ddlib.setups import STATE_FEEDBACK, split
 from ddlib.widgets import Choice, CurveWidget, Mark, Pad, PageWidget, Panel, Parameter, Scalar
 
@@ -126,6 +126,7 @@ def _arguments() -> dict[str, dict]:
     rows, gradients = rng.normal(size=(2, 5, 9)), rng.normal(size=(2, 2, 2, 9))
     sums = dict(zip(("its own torques", "noise"), gradients))
     rounds = [_guess(*rows)] * 2
+    windows, torque = cases(last, 7)
     return {
         "CurveWidget": {
             "function": wave, "parameters": options(), "panels": kinds(), "alt": "Waves",
@@ -141,10 +142,19 @@ def _arguments() -> dict[str, dict]:
             "epochs": [0, 10, 20], "model": network(7, 1, 2, 3), "recording": recording,
             "member": 1,
         },
+        "TurnTheParabola": {
+            "networks": {"an arm": models[7], "a spring": network(7, 5)[0]},
+            "windows": windows, "inertial": rng.normal(size=(len(windows), 2)),
+        },
         "UnitFromFiveStarts": {"networks": {0.1: pair, 0.5: pair[::-1]}},
         "WeighTheArm": {"gradients": sums, "inertia": dict.fromkeys(sums, np.eye(2))},
         "WeightReader": {"start": pair[0], "trained": pair[1], "step": 0.01},
         "WhoseFilters": {"rounds": rounds},
+        "WriteTheLoad": {
+            "model": models[7], "training": cases(learnt, 7)[0],
+            "motion": lambda load: (windows, (1 + load) * torque),
+            "inertia": lambda load: load * np.eye(2),
+        },
     }  # fmt: skip
 
 

@@ -7,6 +7,7 @@ plain dictionary. ``python -m workshop.report.reproduce NAME`` runs one.
 - ``windows``: window sizes, hidden units, states in place of windows, acceleration
 - ``nulls``, ``harmonics``: unrelated torques, other starts and ends; other motions
 - ``targets``: velocity filters by what is learnt, and by the size of the initial weights
+- ``planted``: what is read, and what a knob does, where it is known what was learnt
 - ``span``: learning curves along the directions of the windows
 - ``states``: section 6
 - ``page``: networks that readers train in the pages

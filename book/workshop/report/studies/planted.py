@@ -9,8 +9,8 @@ a fifth more. What would speak against the sentence:
 - A kind with another M that reads like this arm.
 - Position alone: a parabola that moves the torque by more than the constant's second moment asks
   for, ``-K mean(x^2) / 2`` with x the times of the window: that much a row draws against it.
-- Planted numbers that the reading does not find (`control_kind`), or that answer the knobs no more
-  than the arm does not.
+- Planted numbers that the reading does not find (`control_kind`). A planted arm's answer to the
+  knobs is what a perfect network could give: less than 1, as a parabola in a window smooths.
 - A shape that all kinds with an M have, and no other: then it is the arm's.
 """
 
