@@ -48,7 +48,7 @@ def by_keyboard(page) -> str:
     for handle in page.locator(HANDLES).all():
         if not handle.is_visible() or handle.is_disabled() or handle.evaluate(IN_BAR):
             continue
-        for key in ("Home", "ArrowRight", "ArrowUp", "Space"):
+        for key in ("ArrowRight", "ArrowUp", "Space", "Home"):
             handle.press(key)
         page.evaluate(NEXT_FRAME)
         if copied(page, "Link") != start:

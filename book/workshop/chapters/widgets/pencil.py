@@ -126,7 +126,7 @@ class WriteTheLoad(CurveWidget):
         ]
         super().__init__(
             self._curves,
-            [Parameter("load", "Kilograms in the hand", 0, 5, 0, "kg", grid=11)],
+            [Parameter("load", "Kilograms in the hand", 0, 5, 0.5, "kg", grid=11)],
             [*torques, *rows],
             alt="Torques of both joints over time, of the loaded arm, of the network as trained, "
             "and as written on; below them four rows of direct weights, into which parabolas "
