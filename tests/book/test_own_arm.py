@@ -56,7 +56,7 @@ def test_open_cells_import_the_package_and_what_it_needs():
     nodes = [node for code in OPEN.values() for node in ast.walk(ast.parse(code))]
     found = {n.module.partition(".")[0] for n in nodes if isinstance(n, ast.ImportFrom)}
     found |= {name.name for n in nodes if isinstance(n, ast.Import) for name in n.names}
-    assert found == {"control", "dataclasses", "ddlib", "numpy", "scipy"}
+    assert found == {"control", "dataclasses", "ddlib", "numpy", "scipy", "warnings"}
     assert "use-change" in OPEN and len(OPEN) > 12
 
 
