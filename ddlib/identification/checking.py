@@ -156,7 +156,6 @@ def _thinned(recording) -> Recording:
         return plain
     whole = q.shape[1] // count
     q, tau = (x[:, : whole * count].reshape(len(x), whole, count, 2).mean(2) for x in (q, tau))
-    # held torques act later by half a period, whatever the mean is taken over
     return _with(plain, step * count * np.arange(whole), q, tau)
 
 
@@ -351,8 +350,7 @@ def _torque_spikes(recording, pieces, width, fit) -> Iterator[Finding]:
             for model in filter(None, (fit, anywhere)):
                 names, values = model.equations.names, np.nan_to_num(model.estimate.values)
                 left = model.equations.torque[joint] - model.equations.regressor[joint] @ values
-                spike = _averaged(one, names, width)
-                spike = spike.torque[joint]
+                spike = _averaged(one, names, width).torque[joint]
                 seen = np.linalg.norm(spike) > 3 * model.estimate.noise[joint]
                 if seen and 0.5 < abs(spike @ left) / (spike @ spike) < 2:
                     yield Finding(
@@ -377,11 +375,9 @@ def _signs(pieces, fit, works) -> Iterator[Finding]:
         if j == 0:  # so that the first parameter is the mean entry
             regressor[:, at[1]] -= 2 * np.cos(pieces.q[..., 1]).mean() * regressor[:, at[0]]
             regressor[:, at[2]] += 2 * np.sin(pieces.q[..., 1]).mean() * regressor[:, at[0]]
+        equations = Equations(names, (regressor,), (torques[j],), (blur[j],))
         try:
-            alone = _Fit(
-                Equations(names, (regressor,), (torques[j],), (blur[j],)),
-                estimated(Equations(names, (regressor,), (torques[j],), (blur[j],))),
-            )
+            alone = _Fit(equations, estimated(equations))
         except ValueError:
             continue
         inertia, error = alone.of("a" if j == 0 else "d")
