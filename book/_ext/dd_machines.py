@@ -67,7 +67,7 @@ def claims(root: Path) -> dict:
                 "verdict": claim.verdict,
                 "band": dict(claim.band) or None,
                 "why": claim.why,
-                "refuted by": claim.refuted,
+                "refuted by": claim.outcome,
                 "judged on": claim.arm or "simulated arms",
                 "page": page(root, claim.chapter),
                 "address": f"book/ledger.html#claim-{claim.id}",

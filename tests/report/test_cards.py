@@ -29,6 +29,13 @@ def test_every_row_is_in_one_card():
     assert named == Counter(claim.id for claim in ALL if claim.id not in listed)
 
 
+def test_no_card_counts_a_measurement_twice():
+    """A row that measures what another one does cannot come out otherwise."""
+    for card in cards._cards():
+        ways = [repr((c.measure, c.find, c.arguments, c.band, c.loose)) for c in card.deciding]
+        assert len(set(ways)) == len(ways), card.id
+
+
 def test_cards_are_of_their_kind():
     found = cards._cards()
     assert len({card.id for card in found}) == len(found)

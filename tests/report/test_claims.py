@@ -142,8 +142,19 @@ def test_replicates_decide(finds, monkeypatch):
     assert make().judge() == "undecided"
 
 
+def test_a_verdict_that_could_not_come_out_otherwise_is_found(finds):
+    """The word follows from `certain`: written the other way round it is wrong, either way."""
+    finds(2.0)
+    assert make(verdict="by construction").judge() == "reproduced"
+    assert make(refuted="", certain="z").judge() == "by construction"
+    assert all((claim.verdict == "by construction") == bool(claim.certain) for claim in ALL)
+    for changes in ({"certain": "z"}, {"refuted": ""}):
+        with pytest.raises(ValueError, match="claim 'a' must have either refuted or certain"):
+            make(**changes)
+
+
 def test_by_construction_is_measured_all_the_same(finds):
-    claim = make(verdict="by construction")
+    claim = make(verdict="by construction", refuted="", certain="z")
     finds(2.0)
     assert claim.judge() == "by construction"
     assert judged(claim) == "by construction (2.0; holds within a factor of 1.5)"

@@ -52,7 +52,7 @@ def test_a_tile_for_each_claim_with_all_that_the_file_says():
         assert f'id="claim-{claim.id}"' in head and ("†" in head) == bool(claim.after)
         assert html.escape(typeset(claim.claim), quote=False) in head
         assert f"<b>{cards.worded(claim, claim.judge())}</b>" in head
-        assert typeset(claim.why) in inside and typeset(claim.refuted) in inside
+        assert typeset(claim.why) in inside and typeset(claim.outcome) in inside
         own = claim.printed == claims.NOT_IN_PAPER
         assert ("This book's own claim" if own else typeset(claim.as_printed())) in inside
         pages = re.findall(r"\[chapter\]\((.*?)\)", inside)

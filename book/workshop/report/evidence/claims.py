@@ -40,9 +40,10 @@ Claims are listed by the chapter that deals with them. Each is an entry with the
     ``loose`` a claim that misses its band is "not reproduced".
 ``verdict``
     What the band gives, written down so that a change is seen (`judging`). Two are chosen by hand:
-    "by construction" if the band could hardly be missed; then it has no ``loose``, and a miss is
-    "not reproduced". And "not testable"; then without bands, and a ``measure`` only tells from
-    which value of an assumed parameter on the claim would turn.
+    "by construction" if the band could hardly be missed; then it has ``certain`` in place of
+    ``refuted`` and no ``loose``, and a miss is "not reproduced". And "not testable"; then without
+    bands, and a ``measure`` only tells from which value of an assumed parameter on the claim would
+    turn.
 ``after``
     Left out for most. What came before the band: "trial" if a first trial had been seen, "change"
     if it replaced another one, or "trial, change".
@@ -50,9 +51,12 @@ Claims are listed by the chapter that deals with them. Each is an entry with the
     One sentence: the reason for the verdict, the assumption that decides it.
 ``refuted``
     One sentence, by the verdict: the outcome that would have made it "not reproduced"; for a claim
-    that is, the outcome that would have made it better; why there is none, if by construction;
-    what a test would need, if not testable. An outcome is a noun with what belongs to it. The edge
-    of the wider band stands in braces, in words or, by itself, as ``{}``: "more than {a tenth}".
+    that is, the outcome that would have made it better; what a test would need, if not testable.
+    An outcome is a noun with what belongs to it. The edge of the wider band stands in braces, in
+    words or, by itself, as ``{}``: "more than {a tenth}".
+``certain``
+    One sentence in place of ``refuted``: why no outcome could refute it. `Claim.judge` calls a claim
+    "by construction" by this field alone, so that the written word cannot decide itself.
 
 What several claims have in common is said once, in an entry with ``claims`` below it, each of which
 says what is its own. So one sentence of the paper is one entry, whatever it is tried with::
@@ -156,7 +160,8 @@ class Claim:
     printed: float | str
     verdict: str
     why: str
-    refuted: str
+    refuted: str = ""
+    certain: str = ""
     measure: str = ""
     find: Mapping = field(default_factory=dict)
     arguments: Mapping = field(default_factory=dict)
@@ -167,7 +172,9 @@ class Claim:
     after: str = ""
 
     def __post_init__(self):
-        for name in ("id", "where", "chapter", "claim", "why", "refuted"):
+        if bool(self.refuted) == bool(self.certain):
+            raise ValueError(f"claim {self.id!r} must have either refuted or certain")
+        for name in ("id", "where", "chapter", "claim", "why", "outcome"):
             value = getattr(self, name)
             if not isinstance(value, str) or not value.strip():
                 raise ValueError(f"{name} of claim {self.id!r} must be text, got {value!r}")
@@ -191,6 +198,11 @@ class Claim:
                     f"factor of claim {self.id!r} must be at least 1 and the printed value a "
                     f"number, got {bounds['factor']} and {self.printed!r}"
                 )
+
+    @property
+    def outcome(self) -> str:
+        """What would have refuted it, or why nothing could have."""
+        return self.refuted or self.certain
 
     @property
     def is_measured(self) -> bool:
@@ -258,7 +270,7 @@ class Claim:
     def _verdicts(self, values) -> list[str]:
         """The verdict that the bands give for each of some values."""
         values = np.asarray(values)
-        best = "by construction" if self.verdict == "by construction" else "reproduced"
+        best = "by construction" if self.certain else "reproduced"
         nearly = self._within(self.loose, values) if self.loose else False
         rest = np.where(nearly, "qualitative", "not reproduced")
         return np.where(self._within(self.band, values), best, rest).tolist()
@@ -384,7 +396,7 @@ def _entries(entry: Mapping, around: Mapping) -> Iterator[dict]:
         yield from _entries(claim, fields)
 
 
-def _claim(*, id: str, claim: str, refuted: str, reading: str = "", **fields) -> Claim:
+def _claim(*, id: str, claim: str, refuted: str = "", reading: str = "", **fields) -> Claim:
     """A claim of the fields that an entry gives it."""
     arguments = fields.pop("with")
     end, words = _READINGS[reading]

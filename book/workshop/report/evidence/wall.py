@@ -108,7 +108,7 @@ def _tile(claim: Claim, on: str) -> str:
         judged=typeset(worded(claim, judged)),
         why=typeset(claim.why),
         head=_HEADS.get(claim.verdict, "What would have refuted it"),
-        refuted=typeset(claim.refuted),
+        refuted=typeset(claim.outcome),
         links=_links(claim, on),
     )
 
