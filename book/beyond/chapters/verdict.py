@@ -17,7 +17,7 @@ from ddlib.figures import COLOURS, FAINT, INK, Illustration, illustrate, legend_
 from ddlib.figures.style import NARROW
 from ddlib.setups import SETUPS, WINDOWS
 from ddlib.tables import Table, quote, typeset
-from workshop.chapters import excitation, start, window_size
+from workshop.chapters import excitation, planted, start, window_size
 from workshop.chapters.exercises import Exercise, judging
 from workshop.report import results
 from workshop.report.evidence import cards, claims
@@ -88,6 +88,13 @@ def _acceleration() -> tuple[np.ndarray, list[float]]:
     return trial.share(row["real"], "hidden", name), nulls
 
 
+def _velocity_by_solver() -> dict[str, float]:
+    """Shares of velocity filters in hidden units that the solver trained, by the torques."""
+    row = trial.row("solver")
+    by_torques = {"real": row["real"], **row["nulls"]}
+    return {name: trial.share(x, "hidden", ["velocity"]).mean() for name, x in by_torques.items()}
+
+
 def _places() -> list[tuple[str, float]]:
     """Readings and starts that were trained beside unrelated torques."""
     return [(reading, size) for reading in SETUPS for size in results.read("start-nulls")["ranges"]]
@@ -142,6 +149,13 @@ def _quoted() -> None:
     quote("verdict-friction", friction.split()[0])
     quote("verdict-behind", window_size.behind_least_squares().sum())
     quote("verdict-another-day", claims.measured("memorises-damping").value)
+    quote("verdict-knob", planted.every("the arm", "knob").mean())
+    solver = _velocity_by_solver()
+    quote("verdict-solver", 100 * solver["real"])
+    quote("verdict-solver-phases", 100 * solver["phases"])
+    least, most = start.agree_by_direct()
+    quote("verdict-direct-least", f"{least:g}")
+    quote("verdict-direct-most", f"{most:g}")
     for name, share in _orders().items():
         quote(f"verdict-order-{name.split()[0]}", 100 * share)
     quote("verdict-six-identified", np.median(over("identified")))
@@ -164,6 +178,15 @@ def _said() -> None:
     shares = [start.shares_beside(*place, "velocity") for place in _places()]
     fewer = [x.pop("real").mean() < min(null.mean() for null in x.values()) for x in shares]
     stated("verdict-velocity", all(fewer))
+    solver = _velocity_by_solver()
+    stated("verdict-solver", solver["real"] > 3 * solver["phases"])
+    spring = "position alone"
+    stated("verdict-spring", planted.acceleration(spring) > 90)
+    adds, own = (np.abs(planted.every(kind, "knob")) for kind in (spring, "the arm"))
+    stated("verdict-knob", adds.max() < 0.05 and own.min() > 0.8)
+    nulls = [planted.every(kind, "knob").max() for kind in ("shifted", "random phases")]
+    stated("verdict-draws", max(nulls) > 0.6)
+    stated("verdict-written", _verdicts("load-written") == ["reproduced"])
     shares = {place: start.shares_beside(*place, "acceleration") for place in _places()}
     own = {place: x["real"].mean() for place, x in shares.items()}
     most = all(own[reading, 0.03] > 0.6 for reading in SETUPS)

@@ -15,6 +15,7 @@ from ddlib.learning import NotConverged, TrainingSet, Weights, cases, solve, sur
 from ddlib.setups import JOINT_DAMPING, predict
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote
+from workshop.chapters import planted
 from workshop.report import committed, results
 from workshop.report.evidence import cards
 from workshop.report.evidence.statements import resampled, stated
@@ -243,13 +244,7 @@ def _quoted() -> None:
     quote("index-reproduced", cards.tally(tried)["reproduced"])
     at = trial.row(WIDTH)
     by_torques = {"real": at["real"], **{kind: at["nulls"][kind] for kind in ("shifted", "phases")}}
-    velocity, acceleration = (
-        {kind: trial.share(x, "hidden", [name]) for kind, x in by_torques.items()}
-        for name in ("velocity", "acceleration")
-    )
-    unrelated = [resampled(acceleration[kind], np.mean) for kind in ("shifted", "phases")]
-    real = resampled(acceleration["real"], np.mean)
-    stated("index-acceleration-of-the-arm", real > 2 * np.max(unrelated, 0))
+    velocity = {kind: trial.share(x, "hidden", ["velocity"]) for kind, x in by_torques.items()}
     least = min(velocity[kind].mean() for kind in ("shifted", "phases"))
     stated("index-velocity-of-any", bool(least >= velocity["real"].mean()))
     inertia, own = np.array(at["real"]["gains"])[:, 0, 0, 2], trial.arm_gains()[0, 0, 2]
@@ -260,6 +255,20 @@ def _quoted() -> None:
     others = [np.array(trial.row(width)["real"]["gains"])[:, 0, 0, 2] for width in (11, 41)]
     nearest = np.min([np.abs(resampled(each) / own - 1) for each in others], 0)
     stated("index-inertia-other-windows", nearest > off)
+    spring, other = "position alone", "another arm along this motion"
+    short, long = (planted.acceleration(spring, long) for long in (False, True))
+    quote("index-spring", short)
+    quote("index-spring-long", long)
+    stated("index-shapes-of-the-motion", short > 90 and long < 10)
+    still = min(planted.acceleration(other), planted.acceleration(other, long=True))
+    stated("index-shapes-of-another-arm", still > 80)
+    quote("index-knob", planted.every("the arm", "knob").mean())
+    stated("index-spring-adds-nothing", abs(planted.every(spring, "knob")).max() < 0.05)
+    nulls = [planted.every(kind, "M11").max() for kind in ("shifted", "random phases")]
+    stated("index-draws-come-near", max(nulls) > 0.75 * own)
+    load = {m: planted.loaded(JOINT_DAMPING.name, m) for m in ("unedited", "written", "one factor")}
+    stated("index-load-written", load["written"] < 0.3 * load["unedited"])
+    stated("index-load-by-a-factor", load["one factor"] < 1.1 * load["written"])
     rivals = results.read("tuned")["rivals"]
     network, known = (
         np.array(rivals[name]["errors"]["trajectory 6"])

@@ -27,13 +27,13 @@ _WITH_INERTIA = 3
 
 
 @cache
-def of_kinds(long: bool = True) -> Mapping[str, Mapping]:
+def of_kinds(long: bool = True, reading: str = JOINT_DAMPING.name) -> Mapping[str, Mapping]:
     """Networks of each kind of torques from the book's start, by descent as long as the lessons'.
 
     Or, in the study with most networks, five times as `long`.
     """
     rows = results.read("planted")["long" if long else "grid"]
-    wanted = {"reading": JOINT_DAMPING.name, "width": 21, "initial": INITIAL}
+    wanted = {"reading": reading, "width": 21, "initial": INITIAL}
     (row,) = (x for x in rows if {k: x["setting"][k] for k in wanted} == wanted)
     return row["kinds"]
 
@@ -46,6 +46,12 @@ def acceleration(kind: str, long: bool = False) -> float:
 def every(kind: str, what: str) -> np.ndarray:
     """Of each network of a kind its read "M11", kg m², or the answer to the parabola's "knob"."""
     return np.asarray(of_kinds()[kind]["every"][what])
+
+
+def elbow_of_the_other(reading: str) -> float:
+    """How much too heavy another arm's elbow is read on its own recording, as a share."""
+    kind = of_kinds(False, reading)["another arm along its own motion"]
+    return float(kind["read"]["mean"][1][1][2] / kind["truth"][1][1][2] - 1)
 
 
 def loaded(reading: str, model: str) -> float:

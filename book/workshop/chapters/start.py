@@ -22,6 +22,7 @@ from ddlib.setups import (
 )
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, quote, significant
+from workshop.chapters import planted
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured, judged, mean, median
 from workshop.report.studies.nulls import TRIAL
@@ -108,12 +109,24 @@ def agreement_table() -> Table:
     for k, reading in enumerate(SETUPS):
         each = (sum(agreements[size][k].values()) for size in RANGES)
         rows.append((f"{reading} alone", *(f"{score:.1f}" for score in each)))
-    each = (
-        np.mean([sum(agreement(cells()[r][str(size)], "direct").values()) for r in SETUPS])
-        for size in RANGES
-    )
+    each = direct_scores().values()
     rows.append(("read of the direct weights", *(f"{score:.1f}" for score in each)))
     return Table(("remark of the report", *(f"±{size:g}" for size in RANGES)), rows)
+
+
+def direct_scores() -> dict[float, float]:
+    """How many remarks each range meets if they are read of the direct weights."""
+    return {
+        size: np.mean([sum(agreement(cells()[r][str(size)], "direct").values()) for r in SETUPS])
+        for size in RANGES
+    }
+
+
+def agree_by_direct() -> tuple[float, float]:
+    """The least and largest range within half a remark of the best, read of direct weights."""
+    scores = direct_scores()
+    near = [size for size, score in scores.items() if score >= max(scores.values()) - 0.5]
+    return min(near), max(near)
 
 
 # --- what a large start hides -----------------------------------------------------------------
@@ -430,8 +443,19 @@ def _quoted() -> None:
     direct = shares_beside(STATE_FEEDBACK.name, best, "acceleration", "direct")
     unrelated = np.concatenate([direct[kind] for kind in ("shifted", "phases")])
     quote("start-direct-unrelated", 100 * unrelated.mean())
-    inertia = {kind: [null_row(*place)[kind]["M11"] for place in places] for kind in _KINDS}
-    quote("start-inertia-real", np.median(np.concatenate(inertia["real"])))
-    null = np.concatenate([*inertia["shifted"], *inertia["phases"]])
-    quote("start-inertia-null", float(np.median(null)))
+    least, most = agree_by_direct()
+    quote("start-direct-least", f"{least:g}")
+    quote("start-direct-most", f"{most:g}")
+    inertia = {place: np.median(null_row(*place)["real"]["M11"]) for place in places}
+    for reading in SETUPS:
+        found = [inertia[reading, size] for size in nulls["ranges"]]
+        quote(f"start-inertia-{reading.split()[0]}-least", min(found))
+        quote(f"start-inertia-{reading.split()[0]}-most", max(found))
+    off = [planted.elbow_of_the_other(row) for row in SETUPS]
+    quote("start-elbow-least", 100 * min(off))
+    quote("start-elbow-most", 100 * max(off))
+    longer = values(STATE_FEEDBACK.name, INITIAL, 21, "M11")
+    quote("start-inertia-state-longer", np.median(longer))
+    unrelated = [null_row(*p)[kind]["M11"] for p in places for kind in ("shifted", "phases")]
+    quote("start-inertia-null", float(np.median(np.concatenate(unrelated))))
     quote("start-inertia-arm", results.read("excitation")["cells"][0]["arm"])

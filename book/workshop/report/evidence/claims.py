@@ -55,8 +55,8 @@ Claims are listed by the chapter that deals with them. Each is an entry with the
     An outcome is a noun with what belongs to it. The edge of the wider band stands in braces, in
     words or, by itself, as ``{}``: "more than {a tenth}".
 ``certain``
-    One sentence in place of ``refuted``: why no outcome could refute it. `Claim.judge` calls a claim
-    "by construction" by this field alone, so that the written word cannot decide itself.
+    One sentence in place of ``refuted``: why no outcome could refute it. `Claim.judge` says "by
+    construction" by this field alone, so that the written word cannot decide itself.
 
 What several claims have in common is said once, in an entry with ``claims`` below it, each of which
 says what is its own. So one sentence of the paper is one entry, whatever it is tried with::
