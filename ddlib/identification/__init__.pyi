@@ -10,9 +10,6 @@ from .equations import (
     by_smoothing as by_smoothing,
     repeat as repeat,
 )
-from .instruments import (
-    instrumental_variables as instrumental_variables,
-)
 from .known_axes import (
     joint_columns as joint_columns,
     joint_terms as joint_terms,
@@ -38,8 +35,6 @@ from .regression import (
 )
 from .smoothers import (
     butterworth_states as butterworth_states,
-    by_butterworth as by_butterworth,
-    by_kalman as by_kalman,
     kalman_states as kalman_states,
 )
 from .window_filters import (

@@ -90,7 +90,6 @@ def examples() -> dict:
         "filters": [FILTER, FILTER], "reference": REFERENCE, "trajectory": REFERENCE,
         "recording": m["runs"][0], "start": (Q, QD), "x": m["data"].x, "duration": 3.0,
         "target": m["torque"], "predicted": m["torque"], "scale": PAIR,
-        "instruments": m["equations"],
         "truth": np.ones(3), "repetitions": 2, "cutoff": 5.0, "skip": 0.1,
         "rates": FILTER**2, "epochs": [1, 5], "kind": "shifted", "draws": 2, "value": 0.5,
         "change": np.zeros(m["nets"][0].count(biases=True)), "members": 2, "low": PAIR,
@@ -153,8 +152,7 @@ def meant() -> dict:
         "Recording": vars(run), "Setup": dict(steps=2, decay=0.1, hidden=3, initial=0.1),
         "from_states": dict(torque=QDD), "kalman_states": dict(q=run.q, noise=1e-3),
         "butterworth_states": dict(q=run.q), "encoder_step": dict(q=run.q),
-        "by_modulation": dict(width=0.6), "by_kalman": dict(width=0.6),
-        "by_butterworth": dict(width=0.6),
+        "by_modulation": dict(width=0.6),
         "FilteredEquations": dict(regressor=("a", "b", "d"), pull=0.1),
         "FilteredEquations.fit": dict(runs=m["runs"]),
         "FilteredEquations.predict": dict(runs=m["runs"]),
@@ -438,7 +436,6 @@ def kinds() -> dict:
     smooth = np.stack([np.sin(2 * T), np.sin(3 * T)], -1)
     flat = learning.TrainingSet.from_arrays(learning.sliding_windows(smooth, 7), smooth[3:-3])
     silent = replace(runs, tau=runs.tau * [1.0, 0.0])
-    nothing = m["equations"]._replace(regressor=tuple(0 * x for x in m["equations"].regressor))
     return {
         "step must give a whole number": lambda: trajectories.time_grid(0.007),
         "a, b, d must make the mass matrix": lambda: dynamics.Arm("", 1.0, 2.0, 1.0, PAIR),
@@ -472,13 +469,10 @@ def kinds() -> dict:
         ),
         "effects must have a computing time": lambda: simulation.follow(**law, effects=late),
         "width must lie in [0.24, 3]": lambda: identification.by_modulation(runs, width=0.1),
-        "cutoff must be above": lambda: identification.by_butterworth(runs, 0.1),
+        "cutoff must be above": lambda: identification.butterworth_states(runs.q, 0.01, 0.1),
         "names must be one of": lambda: identification.by_modulation(runs, ("mass",)),
         "determine some of a, b, d; they do not": lambda: identification.least_squares(
             identification.from_states(still, 0 * still, 0 * still, 1 + still)
-        ),
-        "instruments must determine": lambda: identification.instrumental_variables(
-            m["equations"], nothing
         ),
         "pull must be given": lambda: identification.FilteredEquations(
             ("a",), 7, 0.02

@@ -20,8 +20,6 @@ from ddlib.identification import (
     FRICTION,
     GRAVITY,
     RIGID,
-    by_butterworth,
-    by_kalman,
     by_modulation,
     least_squares,
     repeat,
@@ -74,11 +72,6 @@ KINDS = {
     "poorly excited": (CMU_DD_ARM_II, LOOP, [(14.0, 9.0)], CMU_DD_ARM_II_EFFECTS),
     "elbow at rest": (CMU_DD_ARM_II, LOOP, [(40.0, 0.0)], CMU_DD_ARM_II_EFFECTS),
 }
-WAYS = {
-    "modulation": by_modulation,
-    "kalman": by_kalman,
-    "butterworth": lambda r, names: by_butterworth(r, 15.0, names),
-}
 
 
 @cache
@@ -89,10 +82,10 @@ def recorded(kind):
     return many, names, true_parameters(arm, effects, names)
 
 
-def shares(kind, way):
+def shares(kind):
     """For each parameter the share of intervals that hold the truth among those given."""
     many, names, truth = recorded(kind)
-    found = least_squares(WAYS[way](many, names))
+    found = least_squares(by_modulation(many, names))
     given = np.isfinite(found.half_width())
     held = (found.covers(truth) & given).sum(0) / np.maximum(given.sum(0), 1)
     sums = []
@@ -103,10 +96,9 @@ def shares(kind, way):
     return given.mean(0), held, sums, found
 
 
-@pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("kind", KINDS)
-def test_intervals_hold_the_truth_or_are_not_given(kind, way):
-    given, held, sums, _ = shares(kind, way)
+def test_intervals_hold_the_truth_or_are_not_given(kind):
+    given, held, sums, _ = shares(kind)
     assert (held[given > 0.02] >= LOWEST).all(), (given, held)
     assert all(share >= LOWEST for _, share in sums), sums
 
@@ -115,7 +107,7 @@ def test_intervals_hold_the_truth_or_are_not_given(kind, way):
 def test_intervals_are_no_wider_than_they_need_be(kind):
     """A stated error of friction was two and three times the error where readings are coarse."""
     _, names, truth = recorded(kind)
-    *_, found = shares(kind, "modulation")
+    *_, found = shares(kind)
     stated = found.errors.mean(0) / (found.values - truth).std(0)
     assert 0.8 < stated.min() and stated.max() < 1.4, dict(zip(names, stated))
 
@@ -144,17 +136,16 @@ def test_a_torque_that_is_held_for_long_moves_no_interval(step):
     """A bump's value in the middle of the hold would move `a` by .09 % at 20 ms, and miss it."""
     run, effects = swung(step)
     truth = true_parameters(CMU_DD_ARM_II, effects, RIGID + FRICTION)
-    for way in WAYS.values():
-        found = least_squares(way(run, RIGID + FRICTION))
-        assert np.isfinite(found.half_width()).all()
-        held = found.covers(truth).mean(0)
-        assert (held >= LOWEST).all(), (step, held)
+    found = least_squares(by_modulation(run, RIGID + FRICTION))
+    assert np.isfinite(found.half_width()).all()
+    held = found.covers(truth).mean(0)
+    assert (held >= LOWEST).all(), (step, held)
 
 
-def told(by, recording, names, count=20):
+def told(recording, names, count=20):
     """In how many of the first repetitions an estimate says that what is left is no noise."""
     few = recording.mapped(lambda x: x[:count] if x.ndim == 4 else x)
-    equations = by(few, names)
+    equations = by_modulation(few, names)
     parts = (
         equations._replace(
             regressor=tuple(a[k] for a in equations.regressor),
@@ -165,14 +156,13 @@ def told(by, recording, names, count=20):
     return sum("is no noise" in str(least_squares(part)) for part in parts)
 
 
-@pytest.mark.parametrize("way", ("modulation", "kalman"))
-def test_an_estimate_tells_where_its_equations_leave_more_than_noise(way):
-    by, names = WAYS[way], RIGID + FRICTION
+def test_an_estimate_tells_where_its_equations_leave_more_than_noise():
+    names = RIGID + FRICTION
     for kind in ("quiet", "as reported", "vertical", "ringing", "joint damping"):
         many, all_names, _ = recorded(kind)
-        assert told(by, many, all_names) == 0, kind
-    assert told(by, recorded("vertical")[0], names) == 20, "without gravity"
+        assert told(many, all_names) == 0, kind
+    assert told(recorded("vertical")[0], names) == 20, "without gravity"
     run, _ = swung(0.01)
-    assert told(by, run, names) == 0
+    assert told(run, names) == 0
     late = replace(run, tau=np.roll(run.tau, 2, axis=-2))
-    assert told(by, late, names) == 20, "a torque that is logged late"
+    assert told(late, names) == 20, "a torque that is logged late"

@@ -1,33 +1,12 @@
 """States from noisy positions, against textbook recursions and closed forms."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from ddlib.control import pd
-from ddlib.dynamics import CMU_DD_ARM_II
-from ddlib.effects import CMU_DD_ARM_II_EFFECTS, Quantisation
-from ddlib.identification import (
-    FRICTION,
-    GRAVITY,
-    RIGID,
-    butterworth_states,
-    by_butterworth,
-    by_kalman,
-    by_smoothing,
-    encoder_step,
-    kalman_states,
-    least_squares,
-    repeat,
-    smoothers,
-    true_parameters,
-)
-from ddlib.trajectories import APPENDIX_I
+from ddlib.effects import Quantisation
+from ddlib.identification import butterworth_states, encoder_step, kalman_states, smoothers
 
-LOOP = pd((300.0, 90.0), (35.0, 10.0))
-VERTICAL = replace(CMU_DD_ARM_II, gravity_moments=(20.0, 5.0))
 STEP = 0.01
 
 
@@ -143,27 +122,6 @@ def test_the_encoders_step_is_seen_from_its_readings():
         assert encoder_step(readings.astype(np.float32)) == pytest.approx(step, rel=1e-2)
     assert encoder_step(walk) is None
     assert encoder_step(np.ones((2, 50))) is None
-
-
-@pytest.mark.parametrize("bits", [16, 12])
-@pytest.mark.parametrize("arm", [CMU_DD_ARM_II, VERTICAL], ids=["horizontal", "vertical"])
-def test_inertias_within_two_percent_where_parabolas_miss_by_more(arm, bits):
-    """The report's motions, its friction and noise; also with an encoder of 4,096 steps a turn."""
-    names = RIGID + (GRAVITY if arm is VERTICAL else ()) + FRICTION
-    effects = replace(CMU_DD_ARM_II_EFFECTS, encoder=(Quantisation.encoder(bits),))
-    many = repeat(arm, LOOP, APPENDIX_I[:5], effects, 12, seed=3)
-    truth = true_parameters(arm, effects, names)
-    heavy = 3 if arm is CMU_DD_ARM_II else 5  # friction comes after
-    off = {}
-    for how, equations in (
-        ("kalman", by_kalman(many, names)),
-        ("butterworth", by_butterworth(many, 12.0, names)),
-        ("parabolas", by_smoothing(many, 21, names)),
-    ):
-        found = least_squares(equations).values.mean(0)
-        off[how] = np.abs(found / truth - 1)[:heavy].max()
-    assert off["kalman"] < 0.03 and off["butterworth"] < 0.03
-    assert off["parabolas"] > 2 * max(off["kalman"], off["butterworth"])
 
 
 def test_decimals_of_a_text_do_not_pass_for_the_noise_of_an_encoder():

@@ -15,7 +15,6 @@ from ddlib.identification import (
     RIGID,
     Equations,
     ImpossibleArm,
-    by_kalman,
     by_modulation,
     excitation,
     from_states,
@@ -107,10 +106,9 @@ def locked(encoder=0.0, noise=0.01, elbow=True, seed=0):
 
 @pytest.mark.parametrize("encoder", [0.0, 1e-4])
 @pytest.mark.parametrize("noise", [0.01, 1e-6])
-@pytest.mark.parametrize("by", [by_modulation, by_kalman])
-def test_a_locked_elbow_leaves_two_sums_and_no_guess(by, encoder, noise):
+def test_a_locked_elbow_leaves_two_sums_and_no_guess(encoder, noise):
     """Of the rows (a + 2 b) q1'' and (b + d) q1'' no parameter can be told by itself."""
-    found = least_squares(by(locked(encoder, noise), RIGID))
+    found = least_squares(by_modulation(locked(encoder, noise), RIGID))
     assert np.isnan(found.values).all() and not found.told.any()
     shoulder, elbow = found.combinations
     np.testing.assert_allclose(shoulder.factors, [1, 2, 0], atol=2e-3)
@@ -173,7 +171,7 @@ def test_masked_torques_are_refused_wherever_they_come_in():
             call()
 
 
-@pytest.mark.parametrize("by", ["states", "modulation", "kalman"])
+@pytest.mark.parametrize("by", ["states", "modulation"])
 def test_an_offset_of_the_torques_is_found(by):
     names, offset = RIGID + FRICTION + OFFSETS, np.array([0.3, -0.05])
     if by == "states":
@@ -184,7 +182,7 @@ def test_an_offset_of_the_torques_is_found(by):
         setup = STATE_FEEDBACK
         recording = setup.record(APPENDIX_I[:5], effects=setup.effects.without("torque_sensor"))
         off = replace(recording, tau=recording.tau + offset)
-        equations = (by_modulation if by == "modulation" else by_kalman)(off, names)
+        equations = by_modulation(off, names)
         truth = true_parameters(setup.arm, setup.effects, names)
     found = least_squares(equations)
     assert found.names == names and (truth[-2:] == 0).all()
@@ -209,15 +207,14 @@ def test_excitation_is_judged_against_noise():
     assert np.isinf(excitation(slight, noise=1.0)) and np.isfinite(excitation(slight, noise=1e-6))
 
 
-@pytest.mark.parametrize("by", [by_modulation, by_kalman])
-def test_a_joint_that_is_left_out_is_named_with_the_parameter_that_asked_for_it(by):
+def test_a_joint_that_is_left_out_is_named_with_the_parameter_that_asked_for_it():
     """With F_c2 the locked elbow's equations go, and b + d, which they alone tell, with them."""
-    with_dry = least_squares(by(locked(), (*RIGID, "F_c2")))
+    with_dry = least_squares(by_modulation(locked(), (*RIGID, "F_c2")))
     left_out = [note for note in with_dry.notes if "joint 2" in note]
     assert left_out == [
         "All equations of joint 2 were left out: with F_c2 they ask for a joint that moves on at "
         "0.1 rad/s or more. Without F_c2 they count."
     ]
     assert left_out[0] in repr(with_dry) and len(with_dry.combinations) == 1
-    without = least_squares(by(locked(), RIGID))
+    without = least_squares(by_modulation(locked(), RIGID))
     assert len(without.combinations) == 2 and not any("left out" in n for n in without.notes)

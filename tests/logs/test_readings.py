@@ -9,7 +9,7 @@ import pytest
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import CoulombFriction, Effects, Noise, Quantisation, ViscousFriction
-from ddlib.identification import by_kalman, by_modulation
+from ddlib.identification import by_modulation
 from ddlib.logs import DoubtfulRecording, Log, LoggedRecording, LoggedRun, resample, warn_of
 from ddlib.logs.readings import readings, spikes
 from ddlib.simulation import record
@@ -175,10 +175,9 @@ def test_fits_to_a_log_warn_of_what_makes_them_wrong(recordings):
     spiked = DEFECTS["spike"](log)
     plain = record(CMU_DD_ARM_II, pd((300, 90), (36, 11)), random_extents(2, seed=0))
     simulated = replace(plain, q=moved(137, 0.05)(plain.q.copy()))
-    for fit in (by_modulation, by_kalman):
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", DoubtfulRecording)
-            fit(log)
-            fit(simulated)  # it is what it is
-        with pytest.warns(DoubtfulRecording, match=r"spike \(run 2, shoulder\)"):
-            fit(spiked)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", DoubtfulRecording)
+        by_modulation(log)
+        by_modulation(simulated)  # it is what it is
+    with pytest.warns(DoubtfulRecording, match=r"spike \(run 2, shoulder\)"):
+        by_modulation(spiked)
