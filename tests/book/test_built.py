@@ -88,9 +88,11 @@ PARTED = re.compile(r"\d (?:N m|kg|mm|rad/s|Hz|ms)(?!\w)|(?:^|[\s(])-\d[\d.]*")
 
 def badly_set(page: BeautifulSoup) -> list[str]:
     """Numbers that a line can part from their unit, and hyphens for a minus."""
-    elements = [el for el in page.select(PROSE) if el.css.closest(NOT_PROSE) is None]
-    texts = [text for el in elements for text in el.find_all(string=True, recursive=False)]
-    return [x for t in texts if not isinstance(t, Comment) for x in PARTED.findall(t)]
+    texts = [text for text in page.find_all(string=PARTED) if not isinstance(text, Comment)]
+    in_prose = [
+        t for t in texts if t.parent.css.match(PROSE) and not t.parent.css.closest(NOT_PROSE)
+    ]
+    return [found for text in in_prose for found in PARTED.findall(text)]
 
 
 @built_test

@@ -60,7 +60,9 @@ def settings(query: str, key: str) -> dict[str, str]:
 
 
 @pytest.mark.browser
-@pytest.mark.parametrize("found", [one for one in OPENED if one["key"]], ids=lambda f: f[0][:60])
+@pytest.mark.parametrize(
+    "found", {one[0]: one for one in OPENED if one["key"]}.values(), ids=lambda f: f[0][:60]
+)
 def test_a_link_opens_its_widget_as_it_says(found, site, visit):
     opened = visit(f"{site}/book/{dd_lessons.address(found)}", reduced_motion="reduce")
     given = urlsplit(opened.page.evaluate(STATE, found["key"]))

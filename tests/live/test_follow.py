@@ -9,7 +9,7 @@ import kernel
 import live_pages
 import matplotlib
 import pytest
-from book_pages import ROOT, WALK
+from book_pages import LESSONS, ROOT
 from chapter_rules import CHANGE_THIS, tags
 from live.cells import live_cells
 from live.packages import PAGE
@@ -106,7 +106,7 @@ def opened(page: str) -> list[dict]:
 
 @pytest.mark.browser
 @pytest.mark.slow
-@pytest.mark.parametrize("page", WALK)
+@pytest.mark.parametrize("page", LESSONS)
 def test_the_graph_of_a_lesson_against_what_running_shows(script, page, monkeypatch):
     """Each open cell runs with the names alone that the graph gives it, and changes no others."""
     matplotlib.use("Agg")

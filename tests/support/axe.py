@@ -28,8 +28,9 @@ OPEN_ALL = "document.querySelectorAll('details').forEach((el) => { el.open = tru
 COLOURS = ["color-contrast", "color-contrast-enhanced", "link-in-text-block"]
 """Rules whose answer hangs on colours."""
 
-# `looks`: of all that has text, the first that looks so, by its own colour and size and by what is
-# behind it. Thousands of words of code have a dozen looks, and axe takes a second for a thousand.
+# `looks`: of all that has text, the first that looks so, by its own colour and size, by the text
+# around it and by what is behind it. Thousands of words of code have a dozen looks, and axe takes a
+# second for a thousand.
 LOOKS = """
 (where) => {
   const behind = new Map([[null, ""]]);
@@ -48,10 +49,12 @@ LOOKS = """
     if (!el.checkVisibility({ visibilityProperty: true })) continue;
     const style = getComputedStyle(el);
     const own = ["color", "fill", "fontSize", "fontWeight", "textDecorationLine", "textShadow"];
-    const look = [ground(el), ...own.map((name) => style[name])].join(" ");
+    const around = el.parentElement && getComputedStyle(el.parentElement).color;
+    const look = [ground(el), around, ...own.map((name) => style[name])].join(" ");
     if (!found.has(look)) found.set(look, el);
   }
   window.looks = [...found.values()];
+  return [...found.keys()];
 }
 """
 
@@ -73,6 +76,11 @@ LOOK = """
 """
 
 
+FRESH = "(places) => { window.looks = places.map((k) => window.looks[k]); }"
+ASKED: set[tuple[str, str]] = set()
+"""Colour schemes and looks that axe has been asked about, on this page or another."""
+
+
 def unfold(page) -> None:
     """Open everything that a reader can unfold, and have axe in the page."""
     page.evaluate(OPEN_ALL)
@@ -90,15 +98,17 @@ def violations(page) -> list[str]:
 def violations_in(page, *schemes: str, where: str = "html") -> list[str]:
     """What axe finds in each colour scheme, on a page or in a part of it.
 
-    The rules on colours are asked in each of them about each look, the others in the first about
-    everything, and then about what has changed.
+    The rules on colours are asked in each of them about each look that no page had before, the
+    others in the first about everything, and then about what has changed.
     """
     found = []
     for k, scheme in enumerate(schemes):
         chromium.coloured(page, scheme)
         unfold(page)
         page.evaluate(LOOK, where)
-        page.evaluate(LOOKS, where)
+        looks = [(scheme, look) for look in page.evaluate(LOOKS, where)]
+        page.evaluate(FRESH, [place for place, look in enumerate(looks) if look not in ASKED])
+        ASKED.update(looks)
         everything = "what changed" if k else [where]
         for asked in ([everything, COLOURS, False], ["each look", COLOURS, True]):
             found += [f"{scheme}: {fault}" for fault in page.evaluate(RUN, asked)]
