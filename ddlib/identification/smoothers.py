@@ -21,6 +21,8 @@ _ORDER = 3  # The acceleration is a random walk.
 def butterworth_states(q, step: float, cutoff: float, order: int = 4) -> np.ndarray:
     """Position, velocity and acceleration by a zero-phase low-pass and central differences.
 
+    As is usual for robots (Gautier 1997).
+
     Parameters
     ----------
     q : array_like, shape (..., time, joint)
