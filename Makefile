@@ -86,7 +86,8 @@ test: unmeasured lint stripped unit foreign-ci pages  ## everything that CI chec
 CORE  = $(wildcard tests/test_*.py) $(addprefix tests/,dynamics effects control simulation \
 	identification learning analysis figures widgets)
 FACTS = $(addprefix tests/book/test_,prose.py notebooks.py lessons.py)
-FRESH = $(addprefix tests/report/test_,code_hash.py results.py judging.py)
+FRESH = $(addprefix tests/report/test_,code_hash.py results.py judging.py claims.py cards.py \
+	refutations.py)
 
 check: lint stripped  ## for every day: style, core tests, house rules, facts, fresh results; sizes
 	@echo "==> Core tests, house rules, facts, fresh results"

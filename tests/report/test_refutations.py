@@ -21,6 +21,7 @@ NUMBERS = {
 def number(words: str) -> float:
     if words in NUMBERS:
         return NUMBERS[words]
+    assert words[:1].isdigit(), f"{words!r} is none of NUMBERS"
     return float(words.removesuffix(" %")) / (100 if words.endswith(" %") else 1)
 
 
