@@ -1,4 +1,4 @@
-"""Data that others made, in ``book/data``: a simulated arm's characters, a real arm's recording."""
+"""Data that others made, in ``book/data``: a simulated arm's characters, two real arms."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class RealArm:
 
     t: np.ndarray
     q: np.ndarray  # rad
-    current: np.ndarray  # of the motors, A
+    current: np.ndarray  # of the motors, A, or their torque, N m
     step: float
 
     def at(self, rate: int) -> RealArm:
@@ -86,3 +86,21 @@ def staubli() -> RealArm:
     with np.load(DATA / "staubli-tx40.npz") as file:
         q, current = np.deg2rad(file["position_deg"]), np.array(file["current_a"])
     return RealArm(np.arange(len(q)) / _RATE, q, current, 1 / _RATE)
+
+
+def kr300() -> list[RealArm]:
+    """Three motions of a KUKA KR 300, six joints, 100 samples a second (MIT licence).
+
+    Each sample is the mean over 10 ms. In the place of currents stand torques of the motors, N m.
+    Source: repository JonasWeigand/Robot_Identification.
+    """
+    with np.load(DATA / "kr300.npz") as file:
+        rate, kept = float(file["rate_hz"]), dict(file)
+    motions = []
+    for motion in "ABC":
+        q, torque = np.deg2rad(kept[f"{motion}_position_deg"]), kept[f"{motion}_torque_nm"]
+        t = np.arange(len(q)) / rate
+        fine = np.arange(round(t[-1] * _RATE)) / _RATE
+        each = (np.stack([np.interp(fine, t, x) for x in both.T], -1) for both in (q, torque))
+        motions.append(RealArm(fine, *each, 1 / _RATE).at(100))
+    return motions

@@ -16,7 +16,8 @@ def test_files_are_as_they_came():
         ("delan-published", "characters",
          "558d09312ec245c3e519c7a797073c16b8b1f735f9c3d03ff0376041df080945"),
         ("double-pendulum", "",
-         "21aeb556cab1a2e6eca9a92172775cc193d83b41b1bac0d592ad590dbbb97fb6"),
+         "ca25bc20dab0db3d1dff5c054c57fa733983d2a26b70a9dab292096331413d18"),
+        ("kr300", "", "c144205a063d2ed721e911e2c716f06926e56dbc2b99ae61c8092c1404d3d0f9"),
     ):  # fmt: skip
         content = (others.DATA / f"{name}.npz").read_bytes()
         assert hashlib.sha256(content).hexdigest() == digest
