@@ -1,13 +1,11 @@
 """The report's experiment on a real two-link arm: what is identified, predicted and read.
 
-Which runs take part was chosen anew, and written down here, before any result of theirs was seen.
-All recordings in which both torques were commanded and the torque column is a current: twelve.
-Five that were here before are out (A0_11, C0_12, C0_13, C1_154220, C1_154548): the builders' tables
-of these have 21 columns in place of 15, and the copy that the data came from, read by place, has
-tau_con for tau_meas. Read by name they could come back. Every run but one trains and that one
-tests, in turn: in A0 five of six, as in the report; in C0 and C1 two of three, which is all there
-is. Networks that are read learnt all runs. `checks/instruments.py` needs the commanded torques, so
-these are in the file, too.
+Which runs take part was written down before any result of theirs was seen: all recordings in which
+both torques were commanded, seventeen. In twelve planned torques drove the arm in open loop. Every
+one of these but one trains and that one tests, in turn: in A0 five of six, as in the report; in C0
+and C1 two of three, which is all there is. In the other five, larger and slower, a controller
+followed a reference. Nothing is trained or tuned on them: they are a test of another kind. One
+reading and one identification take all seventeen, to see what changes.
 """
 
 from __future__ import annotations
@@ -38,11 +36,16 @@ from workshop.report.code_hash import study
 
 STEP = 0.01  # seconds between two samples, as in the report
 
-# Recordings of each design in which both torques were commanded and the torque is a current
+# Recordings of each design with both joints driven: in open loop, and by a controller
 RUNS = {
     "A0": ("A0_00", "A0_01", "A0_02", "A0_03", "A0_04", "A0_05"),
     "C0": ("C0_00", "C0_01", "C0_02"),
     "C1": ("C1_143339", "C1_143524", "C1_143601"),
+}
+CONTROLLED = {
+    "A0": ("A0_11",),
+    "C0": ("C0_12", "C0_13"),
+    "C1": ("C1_154220", "C1_154548"),
 }
 _WIDTHS = tuple(paper.TABLE_4_1)
 _MARGIN, _EVERY = 20, 5  # samples: before the first case, from one case to the next
@@ -159,6 +162,8 @@ def _identified(runs) -> dict:
     errors = [_jackknife(runs, w) for w in LENGTHS]
     settled = {"values": _found(runs, _SETTLED, "averaged")}
     settled["errors"] = _jackknife(runs, _SETTLED, "averaged")
+    every = runs + CONTROLLED[runs[0][:2]]
+    settled["with controlled"] = _found(every, _SETTLED, "averaged")
     return {"by length": by_length, "errors by length": errors, "settled": settled}
 
 
@@ -245,7 +250,7 @@ def optimal_networks(x, y, members, decay, steps) -> TorqueModel:
 
 def _split(runs) -> dict:
     """Networks of each window trained on some runs: errors on all others, and moments."""
-    others = [run for run in RUNS[runs[0][:2]] if run not in runs]
+    others = _others(runs)
     tests, training = {}, []
     for width in _WIDTHS:
         x = all_runs(runs, width)
@@ -260,6 +265,12 @@ def _split(runs) -> dict:
                 tests[width, how, run] = _error(one.torque(_cases(run)[width])[0], run)
     moments = gains(mean_gradient(model, x)[0], STEP)  # of the widest window
     return {"tests": tests, "training": training, "moments": moments}
+
+
+def _others(runs) -> list[str]:
+    """All runs of the same design but these, the controlled ones last."""
+    design = runs[0][:2]
+    return [run for run in RUNS[design] + CONTROLLED[design] if run not in runs]
 
 
 def _few(runs) -> list[tuple]:
@@ -278,7 +289,7 @@ def _predicted(design) -> list[dict]:
     lengths = [(w, how) for w in LENGTHS[:-4] for how in ("plain", "averaged")]
     rows = []
     for runs in chosen:
-        others = [run for run in every if run not in runs]
+        others = _others(runs)
         left_out = list(zip(_few(runs), runs))
         wrong = [
             sum(np.log(split[few]["tests"][*s, out]) for few, out in left_out) for s in settings
@@ -338,8 +349,11 @@ def _read(design, width) -> dict:
     def cut(values):
         return values[_MARGIN : len(values) - _MARGIN : _EVERY]
 
-    states = np.concatenate([cut(fitted_states(recorded_run(r)[0], _SETTLED)) for r in runs])
-    slopes = _slopes(states, published)
+    def slopes_along(runs):
+        states = [cut(fitted_states(recorded_run(run)[0], _SETTLED)) for run in runs]
+        return _slopes(np.concatenate(states), published)
+
+    slopes = slopes_along(runs)
     model, errors, _ = _learnt(x, torque, _MEMBERS)
     data = TrainingSet.from_arrays(x, torque, scaling=(-1, 1))
     row = {
@@ -360,6 +374,13 @@ def _read(design, width) -> dict:
     if width == _WIDTHS[-1]:
         exact, *_ = _learnt(x, published_torque, _MEMBERS)
         row["exact"] = gains(mean_gradient(exact, x), STEP)
+        every = runs + CONTROLLED[design]
+        seen = all_runs(every, width)
+        more, *_ = _learnt(seen, all_runs(every, "torque"), _MEMBERS)
+        row["with controlled"] = {
+            "published": slopes_along(every).mean(0),
+            "networks": gains(mean_gradient(more, seen), STEP),
+        }
         for kind in ("shifted", "other run"):
             targets = np.stack([_unrelated(runs, kind, k) for k in range(_MEMBERS)])
             null, *_ = _learnt(x, torque, _MEMBERS, targets=targets)
@@ -385,6 +406,7 @@ def _two_link() -> dict:
     for design, runs in RUNS.items():
         designs[design] = {
             "runs": runs,
+            "controlled": CONTROLLED[design],
             "published": PUBLISHED[design],
             "identified": _identified(runs),
             "together": [_together(run) for run in runs],

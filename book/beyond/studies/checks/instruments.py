@@ -4,7 +4,8 @@ The recordings have no reference: these arms were driven by planned torques, in 
 commanded torque is what no encoder's noise has touched. A first model, by least squares with the
 same window, says which acceleration it causes at each state of the motion, smoothed over 210 ms;
 the columns of the equations with that acceleration are the instruments. The parameters that come
-out make the instruments once more.
+out make the instruments once more. (Where a controller followed a reference, the command has the
+encoder's noise: these runs are out.)
 
 Expected before the study ran, from a referee's trial on A0 and C0: .94 and .98 of the builders'
 gravity at the shoulder with derivatives over 50 ms.
