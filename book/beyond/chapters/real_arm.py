@@ -240,24 +240,45 @@ def coulomb_apart() -> float:
     return float(ratio.max() / ratio.min() - 1)
 
 
+def viscosity(arm: str, name: str) -> np.ndarray:
+    """What a joint's window reads over the viscous friction, median over parts left out."""
+    parts = results.read("viscosity")[arm]
+    return np.median([[joint["read"][name] for joint in part] for part in parts], axis=0)
+
+
+def left_out_squares(arm: str, name: str) -> np.ndarray:
+    """Squared errors of a model on parts that were left out, ``(parts, joints)``."""
+    parts = results.read("viscosity")[arm]
+    return np.array([[joint["errors"][name] for joint in part] for part in parts])
+
+
 def _quoted() -> None:
     """The numbers of the prose."""
     alike = _alike()
     for name, short in _ALIKE.items():
         quote(f"real-alike-{short}", alike[name])
-    wide, own, least = (alike[n] ** 2 for n in ("network", "network, by joint", "equations"))
-    quote("real-alike-closed-squares", 100 * (wide - own) / (wide - least))
     friction = 100 * np.array(_row(11)["friction"])
     quote("real-friction-least", friction.min())
     quote("real-friction-most", friction.max())
     quote("real-coulomb-off", 100 * coulomb_apart())
-    for what in WORTH:
-        quote(f"real-{what}-joints", int(beyond_null(what).value))
+    quote("real-inertia-joints", int(beyond_null("inertia").value))
     for model, short in (("network", "network"), ("ridge", "linear"), ("identified", "equations")):
         best = min(rms(squares(width, model)) for width in (5, 11, 21, 41, 81))
         quote(f"real-best-{short}", best)
     unrelated = min(named(x).mean() for x in _row(21)["nulls"].values())
     quote("real-names-times", unrelated / named(_row(21)["real"]).mean())
+    read = _row(21)["real"]["velocity"] / np.array(_row(21)["identified"]["viscous"])
+    ranges = {"network": np.median(read, 0)}
+    ranges |= {"kr": viscosity("KR 300", "measured"), "kr-none": viscosity("KR 300", "no viscous")}
+    for name, by_joint in ranges.items():
+        quote(f"viscosity-{name}-least", by_joint.min())
+        quote(f"viscosity-{name}-most", by_joint.max())
+    for arm, short in (("KR 300", "kr"), ("TX40", "tx")):
+        plain, signs = (
+            left_out_squares(arm, name) for name in ("window", "window and three signs")
+        )
+        quote(f"viscosity-{short}-better", int((signs < plain).sum()))
+        quote(f"viscosity-{short}-all", plain.size)
     for name, value in swinging.numbers().items():
         quote(f"two-{name}", value)
 
