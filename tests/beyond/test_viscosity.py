@@ -7,7 +7,6 @@ from beyond.others import DATA, kr300
 from beyond.studies import viscosity
 from ddlib.learning import sliding_windows
 
-
 STEP, AMPLITUDE, RATE = 0.01, 0.5, 2.9  # s, rad, rad/s: of the joint that is read
 
 
