@@ -3,8 +3,8 @@
 Which runs take part was written down before any result of theirs was seen: all recordings in which
 both torques were commanded, seventeen. In twelve planned torques drove the arm in open loop. Every
 one of these but one trains and that one tests, in turn: in A0 five of six, as in the report; in C0
-and C1 two of three, which is all there is. In the other five, larger and slower, a controller
-followed a reference. Nothing is trained or tuned on them: they are a test of another kind. One
+and C1 two of three, which is all there is. In the other five a controller followed a
+reference up to the top. Nothing is trained or tuned on them: they are a test of another kind. One
 reading and one identification take all seventeen, to see what changes.
 """
 
