@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from beyond.studies.two_link import (
+    CONTROLLED,
     PUBLISHED,
     RUNS,
     START,
@@ -64,7 +65,7 @@ def _pendulum(width: int, method: str) -> dict:
     model, filters = _swinging(RUNS["A0"], width, method), moment_filters(width, STEP)
     short, long = (np.array(list(PUBLISHED[design].values())) for design in ("A0", "C1"))
     found: dict = {}
-    for run in RUNS["C1"]:
+    for run in RUNS["C1"] + CONTROLLED["C1"]:
         x, torque = all_runs([run], width), all_runs([run], "torque")
         rows = regressor(states := all_runs([run], 41)[..., 14:27] @ moment_filters(13, STEP).T)
         change = _slopes(states, (long - short) * _RIGID)
