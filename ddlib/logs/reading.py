@@ -229,11 +229,14 @@ def _as_frame(frame):
 
     if not isinstance(frame, (pandas.DataFrame, Mapping)):
         raise TypeError(f"frame must be a DataFrame or a mapping of arrays, got {told(frame)}")
-    parts = []
+    parts, structs = [], []
     for head, values in frame.items():
+        if getattr(getattr(values, "dtype", None), "names", None):
+            structs.append(head)
+            continue
         if isinstance(values, pandas.Series) and isinstance(next(iter(values), None), list):
             values = values.to_list()  # as in records of JSON
-        if np.ndim(values) in (1, 2) and np.size(values):
+        if np.ndim(values) in (1, 2) and (np.size(values) > 1 or head in _QUANTITIES):
             part = pandas.DataFrame(values).reset_index(drop=True)
             part = part.T if len(part) == 1 else part  # a row of MATLAB
             joints = range(1, part.shape[1] + 1)
@@ -241,8 +244,13 @@ def _as_frame(frame):
             parts.append(part)
     if len({len(part) for part in parts}) != 1:
         got = ", ".join(f"{part.columns[0]} {len(part)}" for part in parts) or "none"
+        inside = "".join(
+            f"; the fields of {head} are in loadmat(path, simplify_cells=True)[{head!r}]"
+            for head in structs[:1]
+        )
         raise fault(
-            f"frame must hold arrays (samples,) or (samples, joint) of one length, got {got}"
+            "frame must hold arrays (samples,) or (samples, joint) of one length, got "
+            f"{got}{inside}"
         )
     return pandas.concat(parts, axis=1)
 

@@ -261,40 +261,30 @@ def _zeros(x) -> Iterator[tuple[int, int]]:
 
 
 def _torque(q, tau, step, name) -> Iterator[Finding]:
-    """A torque that is lost or stays while the joint moves on, or a single wrong one."""
+    """A torque that is lost for some samples."""
     if tau.size < 12 or steady(tau):
         return
     steps, moves = np.abs(np.diff(tau)), np.diff(q) != 0
     if np.mean(steps[moves] == 0) > 0.3:  # it comes at a slower rate, or in few steps
         return
-    usual, zeros, held = np.median(steps), [], []
+    usual, zeros = np.median(steps), []
     for begin, end in _zeros(tau):
         sides = np.r_[tau[begin - 3 : begin], tau[end : end + 3]]
         same = np.all(sides > 0) or np.all(sides < 0)
         if same and np.abs(sides).min() > max(6 * usual, 3 * np.ptp(sides) / 2, 0.05 * tau.std()):
             zeros.append(np.arange(begin, end))
-    for begin, end in constant(tau):
-        inside = 3 <= begin and end <= tau.size - 3 and tau[begin] not in (0, tau.min(), tau.max())
-        moved = np.ptp(q[begin:end]) > 0.01 * np.ptp(q)
-        alone = np.count_nonzero(steps == 0) - (end - begin) < 0.02 * tau.size
-        if end - begin >= 10 and inside and moved and (alone or steps[end - 1] > 3 * usual):
-            held.append(np.arange(begin, end))
-    for stretches, what, kind in (
-        (zeros, "is exactly zero between others", "torque zero"),
-        (held, "does not change while the joint moves", "torque held"),
-    ):
-        if stretches:
-            yield _finding(
-                kind, "wrong" if kind == "torque zero" else "doubtful",
-                f"The torque {what} in {plural(len(stretches), 'stretch')}.",
-                "Equations are told a torque that did not act.",
-                "Take these samples out of the file, unless the torque was switched so.",
-                np.concatenate(stretches),
-            )  # fmt: skip
+    if zeros:
+        yield _finding(
+            "torque zero", "wrong",
+            f"The torque is exactly zero between others in {plural(len(zeros), 'stretch')}.",
+            "Equations are told a torque that did not act.",
+            "Take these samples out of the file, unless the torque was switched so.",
+            np.concatenate(zeros),
+        )  # fmt: skip
 
 
 def _limits(q, tau, step, name) -> Iterator[Finding]:
-    """A torque at a limit, and one that comes down to zero and never changes its sign."""
+    """A torque at a limit."""
     if steady(tau):
         return
     waits = np.diff(np.flatnonzero(np.diff(tau)))
@@ -312,25 +302,6 @@ def _limits(q, tau, step, name) -> Iterator[Finding]:
                 "well.",
                 "Compare with the drive's limit; else leave these samples out.", rows,
             )  # fmt: skip
-    size, moves = np.abs(tau), np.diff(q)
-    one_sign = tau.min() > -0.01 * size.max() or tau.max() < 0.01 * size.max()
-    both_ways = min(moves[moves > 0].sum(), -moves[moves < 0].sum()) > 0.1 * np.abs(moves).sum()
-    if not one_sign or not both_ways or np.ptp(q) < 0.1:
-        return
-    small = size < 0.1 * size.max()
-    edges = np.flatnonzero(np.diff(np.r_[False, small, False].astype(np.int8)))
-    lowest = [b + size[b:e].argmin() for b, e in zip(edges[::2], edges[1::2])]
-    bends = np.abs(size[6:] - 2 * size[3:-3] + size[:-6])
-    at_zero = [bends[k - 3] for k in lowest if 3 <= k < size.size - 3]
-    touches = len(at_zero)
-    if touches >= 3 and np.median(at_zero) > 4 * np.median(bends):  # it is mirrored there
-        yield _finding(
-            "torque of one sign", "doubtful",
-            f"The torque comes down to zero {plural(touches, 'time')} and never changes its sign, "
-            "while the joint moves both ways.",
-            "If only the amount of a current was logged, inertia and friction are wrong.",
-            "Log the current with its sign, or give it that of the command.",
-        )  # fmt: skip
 
 
 def steady(x) -> bool:

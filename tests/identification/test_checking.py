@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.signal import savgol_filter
 
 from ddlib import figures
 from ddlib.control import pd, proportional
@@ -114,10 +115,20 @@ def zeroed(tau):
     return tau
 
 
+def geared(recording):
+    """A rotor behind a gear, which asks for half as much as the elbow's torque has."""
+    width = max(int(0.06 / recording.step) // 2 * 2 + 1, 5)
+    faster = savgol_filter(recording.q[..., 1], width, 3, 2, axis=1)
+    more = 0.5 * recording.tau[..., 1].std() * faster / faster.std()
+    return replace(recording, tau=recording.tau + more[..., None] * [0, 1])
+
+
 BY_EQUATIONS = {
     "zero of the shoulder": turned(90, 0),
     "zero of the shoulder, 10": turned(-10, 0),
+    "zero of the shoulder, 180": turned(180, 0),
     "zero of the elbow": turned(0, 90),
+    "zero of the elbow, 180": turned(0, 180),
     "zero of the elbow, 15": turned(0, -15),
     "order of the joints": changed(lambda q: q[..., ::-1], lambda tau: tau[..., ::-1]),
     "order of the angles": changed(lambda q: q[..., ::-1]),
@@ -125,11 +136,19 @@ BY_EQUATIONS = {
     "elbow angle": changed(lambda q: q @ [[1, 1], [0, 1]]),
     "sign of the elbow": changed(lambda q: q * [1, -1], lambda tau: tau * [1, -1]),
     "sign of a torque": changed(tau=lambda tau: tau * [1, -1]),
-    "sign of the torque": changed(tau=np.negative),
+    "sign of a torque, the shoulder's": changed(tau=lambda tau: tau * [-1, 1]),
+    "sign of a torque, both": changed(tau=np.negative),
+    "sign of an angle": changed(lambda q: q * [1, -1]),
+    "sign of an angle, the shoulder's": changed(lambda q: q * [-1, 1]),
+    "scale of a torque": changed(tau=lambda tau: tau * [1, 1.25]),
+    "scale of a torque, the shoulder's": changed(tau=lambda tau: tau * [1.25, 1]),
+    "geared motor": geared,
     "torque offset": changed(tau=lambda tau: tau + 0.3 * tau.std((0, 1))),
     "torque spike": changed(tau=spiked),
     "torque zero": changed(tau=zeroed),
     "units of angle": changed(np.rad2deg),
+    "units of angle, the shoulder's": changed(lambda q: q * [180 / np.pi, 1]),
+    "units of angle, the elbow's": changed(lambda q: q * [1, 180 / np.pi]),
     "lag": changed(tau=lambda tau: np.roll(tau, 3, axis=1)),
     "lag, early": changed(tau=lambda tau: np.roll(tau, -3, axis=1)),
 }
@@ -218,7 +237,7 @@ def test_a_shoulder_that_is_held_gives_way_and_has_no_wrong_sign():
         tau += rng.normal(0, 0.03 * tau.std(0), tau.shape)
         log = resample(Log((LoggedRun("held", t, q, tau, 2 + np.arange(t.size)),)))
         assert not check_recording(log).wrong, seed
-        assert check_recording(changed(tau=np.negative)(log)).of("sign of the torque"), seed
+        assert check_recording(changed(tau=np.negative)(log)).of("sign of a torque"), seed
 
 
 def test_recordings_of_the_book_and_of_a_real_arm():

@@ -206,6 +206,18 @@ def test_other_files_are_read_as_their_error_says(name, save, load, tmp_path):
     np.testing.assert_allclose(read_frame(load(path)).runs[0].q, Q, atol=1e-9)
 
 
+def test_files_of_matlab_hold_more_than_arrays(tmp_path):
+    """What is one number or text is passed over; a struct's error says how to get its fields."""
+    path, arrays = tmp_path / "own.mat", {"time": TIME, "q": Q, "tau": TAU}
+    savemat(path, arrays | {"Ts": 0.01, "name": "own", "arm": {"mass": 1.0}})
+    np.testing.assert_allclose(read_frame(loadmat(path)).runs[0].q, Q, atol=1e-9)
+    savemat(path, {"data": arrays})
+    with pytest.raises(ValueError, match=r"got none; the fields of data .*simplify_cells=True"):
+        read_frame(loadmat(path))
+    fields = loadmat(path, simplify_cells=True)["data"]
+    np.testing.assert_allclose(read_frame(fields).runs[0].q, Q, atol=1e-9)
+
+
 ERRORS = [
     (table("stamp,q1,q2,tau1,tau2"), {},
      r"own.csv, line 1: no column time in stamp, q1, q2, tau1, tau2; say what it is called by "

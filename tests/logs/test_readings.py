@@ -10,7 +10,7 @@ from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import CoulombFriction, Effects, Noise, Quantisation, ViscousFriction
 from ddlib.identification import by_modulation
-from ddlib.logs import DoubtfulRecording, Log, LoggedRecording, LoggedRun, resample, warn_of
+from ddlib.logs import DoubtfulRecording, LoggedRecording, warn_of
 from ddlib.logs.readings import readings, spikes
 from ddlib.simulation import record
 from ddlib.trajectories import random_extents
@@ -67,11 +67,6 @@ def zeroed(x):
     return x
 
 
-def stuck(x):
-    x[:, 150:180] = x[:, 150:151]
-    return x
-
-
 def locked(x):
     return x * [1, 0] + np.random.default_rng(2).normal(0, 1e-4, x.shape) * [0, 1]
 
@@ -98,7 +93,6 @@ DEFECTS = {
     "spike at rest": angles(moved(15, 0.05)),
     "drop-outs (held)": angles(held),
     "drop-outs (zero)": angles(lambda q: zeroed(q + 0.4)),
-    "torque held": torques(stuck),
     "saturation": torques(lambda tau: np.clip(tau, -0.5 * tau.max(), 0.5 * tau.max())),
     "no torque": torques(lambda tau: tau * [1, 0]),
     "at rest": angles(locked),
@@ -158,16 +152,6 @@ def test_spikes_are_rare_in_noise_and_in_steps():
         rows, sizes = spikes(q)
         hits += row in rows and abs(sizes[rows == row][0] / size - 1) < 0.5
     assert false <= 1 and hits >= 97
-
-
-def test_a_torque_without_its_sign_is_told():
-    t = 0.004 * np.arange(1000)
-    q = np.stack([np.sin(3 * t) + 0.2 * t, 0.7 * np.sin(5 * t + 1)], axis=-1)
-    tau = np.stack([np.sin(3 * t + 2) + 0.3 * np.sin(17 * t), 0.5 * np.sin(5 * t)], axis=-1)
-    log = resample(Log((LoggedRun("own.csv", t, q, tau, np.arange(1000)),)))
-    for change, told in ((np.abs, {0, 1}), (lambda x: -np.abs(x), {0, 1}), (np.copy, set())):
-        every = readings(torques(change)(log))
-        assert {one.joint for one in every if one.kind == "torque of one sign"} == told
 
 
 def test_fits_to_a_log_warn_of_what_makes_them_wrong(recordings):
