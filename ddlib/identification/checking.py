@@ -229,7 +229,8 @@ class _Model:
         rows = [self.parts[j][1][:, at] / size[j] for j in used]
         seen = [self.parts[j][0].T @ self.torques[j] / size[j] for j in used]
         rest = [n - y @ y for n, y in zip(count, seen)]
-        scale = np.linalg.norm(np.concatenate(rows), axis=0) + 1e-300
+        scale = np.linalg.norm(np.concatenate(rows), axis=0)
+        scale = np.where(scale > 0, scale, 1.0)
         left = np.ones(used.size)
         for _ in range(4):
             a, y = (np.concatenate([x / n for x, n in zip(xs, left)]) for xs in (rows, seen))
@@ -492,7 +493,7 @@ def _constants(model, gains, tau, heavy, names) -> Iterator[Finding]:
             continue
         (x, dx), (y, dy) = model.told(cosine), model.told(sine)
         angle = np.degrees(np.arctan2(y, x))
-        error = np.degrees(np.hypot(x * dy, y * dx) / (x**2 + y**2))
+        error = np.degrees(np.hypot(x * dy, y * dx) / (x**2 + y**2 + 1e-300))
         kind = f"zero of the {JOINTS[joint]}"
         opposite = bool(abs(angle) > 175 and x < -8 * dx)
         if opposite or (kind in gains and abs(angle) > max(LEAST_ANGLE[joint], 4 * error)):
