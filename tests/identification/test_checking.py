@@ -249,7 +249,7 @@ def test_recordings_of_the_book_and_of_a_real_arm():
             runs = (
                 LoggedRun(design, x[:, 0], x[:, 1:3], x[:, 3:5], np.arange(len(x))) for x in logged
             )
-            recording = resample(Log(tuple(runs)))
+            recording = resample(Log(tuple(runs)), step=0.002)
             assert not check_recording(recording, names(True)).wrong
             assert check_recording(recording).of("gravity")
 
