@@ -116,7 +116,8 @@ def main(arguments=None) -> None:
         made_by = {**results.stamp(time.monotonic() - started), "jobs": options.jobs}
         made_by["parts"] = len(known)
         results.write_json(results.FOLDER / "reproduce.json", {"made by": made_by})
-    _picture()
+    if not options.parts:
+        _picture()
 
 
 if __name__ == "__main__":
