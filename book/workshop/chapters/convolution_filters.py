@@ -40,41 +40,37 @@ def trained_unit() -> np.ndarray:
 
 
 _REPORT = {
-    "Figure 5-4": (21, "velocity", "“a simple velocity filter”"),
-    "Figure 5-5": (21, "acceleration", "“a simple acceleration filter”"),
-    "Figure 5-6": (21, "velocity + acceleration",
+    "Figure 5-4": (21, 1, "velocity", "“a simple velocity filter”"),
+    "Figure 5-5": (21, 0, "acceleration", "“a simple acceleration filter”"),
+    "Figure 5-6": (21, 1, "velocity + acceleration",
                    "“a linear combination of velocity and acceleration”"),
-    "Figure 5-7": (41, "acceleration + jerk", "rough edges; acceleration, jerk, and noise"),
-    "Figure 5-8": (41, "not analysable", "weights that “do not decompose cleanly”"),
+    "Figure 5-7": (41, 1, "acceleration + jerk", "rough edges; acceleration, jerk, and noise"),
+    "Figure 5-8": (41, 0, "not analysable", "weights that “do not decompose cleanly”"),
 }  # fmt: skip
+"""Window, joint whose positions are weighted, name and words of each of the report's rows."""
 
 
 def reported() -> dict[str, np.ndarray]:
     """A row for each of the report's Figures 5-4 to 5-8, from networks trained by its recipe.
 
-    At window 21 the purest of a name, at 41, where the report shows rough edges, the roughest.
+    Of the report's joint; at window 21 the purest of a name, at 41, where the report shows rough
+    edges, the roughest.
     """
-    rows = {w: results.networks(w).weights.hidden_weights.reshape(-1, w) for w in (21, 41)}
     filters = {}
-    for figure, (width, name, _) in _REPORT.items():
+    for figure, (width, joint, name, _) in _REPORT.items():
+        rows = results.networks(width).weights.hidden_weights[..., joint, :].reshape(-1, width)
         if width == 21:
-            f = purest(rows[width], name)
+            f = purest(rows, name)
         else:
-            fitting = rows[width][classify(rows[width]) == name]
+            fitting = rows[classify(rows) == name]
             f = fitting[roughness(fitting).argmax()]
         filters[figure] = upright(f)
     return filters
 
 
-def _joint(f: np.ndarray) -> int:
-    """The joint whose window a row of `reported` weights."""
-    weights = results.networks(f.size).weights.hidden_weights
-    return int(np.argwhere((np.abs(weights) == np.abs(f)).all(-1))[0][2])
-
-
 def panels() -> dict[str, np.ndarray]:
     """The rows of `reported` by figure and joint."""
-    return {f"{figure}, {JOINTS[_joint(f)]}": f for figure, f in reported().items()}
+    return {f"{figure}, {JOINTS[_REPORT[figure][1]]}": f for figure, f in reported().items()}
 
 
 def said_and_seen() -> Table:
@@ -83,7 +79,7 @@ def said_and_seen() -> Table:
     for figure, f in reported().items():
         energy = zip((*DERIVATIVES, "rest"), shares(f))
         cell = ", ".join(f"{name} {100 * share:.0f}" for name, share in energy if share > 0.05)
-        rows.append((figure, _REPORT[figure][2], cell, str(classify(f))))
+        rows.append((figure, _REPORT[figure][3], cell, str(classify(f))))
     heads = "figure", "what the report says", "what we see, % of the energy", "name by the rule"
     return Table(heads, rows)
 
@@ -103,7 +99,7 @@ def puzzles() -> dict[str, np.ndarray]:
     gain, filters = results.networks(21).inputs.gain, reported()
     rows = {"landing page": carried()}
     for label, figure in {"A": "Figure 5-6", "B": "Figure 5-4", "C": "Figure 5-5"}.items():
-        rows[label] = gain[_joint(filters[figure])] * filters[figure]
+        rows[label] = gain[_REPORT[figure][1]] * filters[figure]
     return rows
 
 

@@ -128,6 +128,11 @@ def _quoted() -> None:
         quote(f"hinton-gain-{joint}", gain)
     for name, size in (("small", INITIAL), ("large", 10 * INITIAL)):
         quote(f"hinton-named-{name}", 100 * named(JOINT_DAMPING.name, size).mean())
+    days = results.read("recordings")["setups"][JOINT_DAMPING.name]
+    found = [np.array(days[str(w)]["largest weight"]) for w in WINDOWS]
+    quote("hinton-days", len(found[0]))
+    *others, last = (significant(np.median(sizes)) for sizes in found)
+    quote("hinton-over-days", f"{', '.join(others)} and {last}")
 
 
 def _exercise(number: int, given) -> Exercise:

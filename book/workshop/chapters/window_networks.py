@@ -271,6 +271,10 @@ def _quoted() -> None:
         quote(f"window-passes-{w}", 1500 * weights)
     quote("window-worst", _worst(JOINT_DAMPING.name))
     quote("window-worst-state", _worst("state feedback"))
+    quote("window-least-printed", min(WINDOWS, key=_PRINTED["test"].get))
+    for name, ending in zip(("state", "damping"), _LESSON.values()):
+        test = {w: claims.measured(f"table-4-1-test-{w}{ending}").value for w in WINDOWS}
+        quote(f"window-least-{name}", min(WINDOWS, key=test.get))
 
 
 def _exercise(number: int, *given) -> Exercise:
