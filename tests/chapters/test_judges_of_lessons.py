@@ -1,5 +1,6 @@
 """Judges of answers that a lesson's own objects decide, on objects whose answers are known."""
 
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -18,8 +19,8 @@ K = np.arange(WIDTH) - WIDTH // 2
 X = 0.01 * K
 
 
-def judged(module, answer, *given, capsys):
-    module.check(4, answer, *given)
+def judged(module, answer, *given, capsys, number=4):
+    module.check(number, answer, *given)
     return capsys.readouterr().out
 
 
@@ -67,14 +68,13 @@ def test_the_filter_with_the_recorded_torques_is_found_whatever_its_shape(capsys
     windows -= windows.mean(0)
     torque = (windows @ true + 7.0).reshape(2, 150, 1)
     six = np.array([0.5 * true, -true, rng.normal(size=4), true, 1.4 * true, 0 * true])
+    told = partial(judged, whose_filters, capsys=capsys, number=3)
     given = six, windows, torque
-    assert judged(whose_filters, 4, *given, capsys=capsys).startswith("Right: its torques have an")
-    text = judged(whose_filters, 1, *given, capsys=capsys)
+    assert told(4, *given).startswith("Right: its torques have an")
+    text = told(1, *given)
     assert text.startswith("Wrong: its torques miss the arm's by an RMSS of 0.50.")
-    assert judged(whose_filters, 2, *given, capsys=capsys).startswith("Wrong: its torques go down")
-    assert judged(whose_filters, 7, *given, capsys=capsys).startswith(
-        "Wrong: the filters are count"
-    )
+    assert told(2, *given).startswith("Wrong: its torques go down")
+    assert told(7, *given).startswith("Wrong: the filters are count")
 
 
 def test_half_of_the_inertia_is_left_where_the_penalty_is_the_variance(capsys):

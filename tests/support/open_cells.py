@@ -33,7 +33,7 @@ SHORT = {
     "run-time": "epochs = 400",
     "stirring": "few, many = 5, 20",
     "whole-state-space": "epochs, warm_up = 400, 50",
-    "whose-filters": "epochs, steps = 400, 1000",
+    "whose-filters": "epochs = 400",
     "window-networks": "epochs = 400",
     "window-size": "epochs = 400",
 }

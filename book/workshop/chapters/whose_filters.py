@@ -207,7 +207,7 @@ def _quoted() -> None:
 
 
 def _exercise(number: int, given, *others) -> Exercise:
-    """An exercise: `given` seconds of a motion, step times variance by direction, or filters."""
+    """An exercise: `given` the seconds of a motion, a number of draws, or six filters."""
     if number == 1:
         slips = (
             (given, "a shift of half a period only changes the torque's sign."),
@@ -222,16 +222,7 @@ def _exercise(number: int, given, *others) -> Exercise:
             "write the shifted sine as a sum of a sine and a cosine.",
             unit="s",
         )
-    elif number == 2:
-        half = np.log(0.5) / np.log1p(-given[4])
-        slips = (
-            (1 / given[4], "after so many steps 37 % of the error are left, not half."),
-            (-np.log(0.5) / given[2], "this is the number for velocity."),
-        )
-        return Exercise(
-            "number", half, "so many steps bring acceleration half-way.", slips, unit="steps"
-        )
-    elif number == 4:
+    elif number == 3:
         X, real = others
         torque = real[..., 0].ravel() - real[..., 0].mean()
         answers = np.asarray(given) @ X.T
