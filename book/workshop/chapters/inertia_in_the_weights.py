@@ -168,14 +168,14 @@ def _quoted() -> None:
     quote("inertia-m11", np.median(np.array(trial.row(_WIDTH)["real"]["gains"])[:, 0, 0, 2]))
     quote("inertia-m11-arm", _arm())
     quote("inertia-off", 100 * trial.calibrated("inertia", _WIDTH).value)
-    quote("inertia-off-by", excitation.half_foretold().value)
     lost = excitation.cell("state feedback", 1.0)
     quote("inertia-lost", np.median(np.array(lost["descent"]["M11"])[-1]))
     quote("inertia-lost-arm", lost["arm"])
     halves = {"inertia-half-damped": "damped joints", "inertia-half-state": "state feedback"}
     for name, drive in halves.items():
         half = np.median(excitation.cell(drive, 1.0)["half"])
-        quote(name, 1e6 * half)
+        if "state" in name:
+            quote(name, 1e6 * half)
         quote(name.replace("half", "left"), 100 * half / (half + 1e-5))
     for name, kind in (("arm", "the arm"), ("position", "position alone"), ("shifted", "shifted")):
         answers = planted.every(kind, "knob")

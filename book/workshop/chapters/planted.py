@@ -1,4 +1,4 @@
-"""What networks of known torques show: their shapes, their sizes, their answers to a knob."""
+"""What networks of known torques show: shapes, sizes, answers to a knob; and what is written."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ddlib.figures.style import COLOURS, INK, Illustration, illustrate
-from ddlib.setups import INITIAL, JOINT_DAMPING
+from ddlib.setups import INITIAL, JOINT_DAMPING, SETUPS, STATE_FEEDBACK, WINDOWS
+from ddlib.tables import Table, how_many, quote, significant
 from workshop.report import results
 
 KINDS = {
@@ -32,10 +33,25 @@ def of_kinds(long: bool = True, reading: str = JOINT_DAMPING.name) -> Mapping[st
 
     Or, in the study with most networks, five times as `long`.
     """
-    rows = results.read("planted")["long" if long else "grid"]
     wanted = {"reading": reading, "width": 21, "initial": INITIAL}
-    (row,) = (x for x in rows if {k: x["setting"][k] for k in wanted} == wanted)
-    return row["kinds"]
+    return _row("long" if long else "grid", wanted)["kinds"]
+
+
+def _row(part: str, wanted: Mapping) -> Mapping:
+    """The row of a part of the study with the wanted settings."""
+    rows = results.read("planted")[part]
+    (row,) = (x for x in rows if {k: x["setting"].get(k) for k in wanted} == wanted)
+    return row
+
+
+def _knob(kind: Mapping) -> tuple[float, float]:
+    """The shoulder's answer to the parabola, and the half of its interval."""
+    return tuple(float(kind["knobs"]["shape"][what][2][0][0]) for what in ("mean", "half"))
+
+
+def _read(kind: Mapping, what: str = "mean") -> float:
+    """The shoulder's inertia that is read, kg m², or the half of its interval."""
+    return float(kind["read"][what][0][0][2])
 
 
 def acceleration(kind: str, long: bool = False) -> float:
@@ -54,11 +70,16 @@ def elbow_of_the_other(reading: str) -> float:
     return float(kind["read"]["mean"][1][1][2] / kind["truth"][1][1][2] - 1)
 
 
+def _changes(reading: str, width: int, method: str) -> Mapping[str, Mapping]:
+    """What was written into the networks of a setting, by the change."""
+    wanted = {"reading": reading, "width": width, "method": method}
+    (row,) = (x for x in results.read("written")["rows"] if x["setting"] == wanted)
+    return row["changes"]
+
+
 def loaded(reading: str, model: str) -> float:
     """RMSS of networks, or what else, on trajectory 6 of the arm with 3 kg in its hand."""
-    wanted = {"reading": reading, "width": 21, "method": "descent"}
-    (row,) = (x for x in results.read("written")["rows"] if x["setting"] == wanted)
-    return float(np.mean(row["changes"]["3 kg"]["error"][model]["mean"]))
+    return float(_changes(reading, 21, "descent")["3 kg"]["error"][model]["mean"])
 
 
 def shapes_and_sizes() -> Illustration:
@@ -97,3 +118,114 @@ def shapes_and_sizes() -> Illustration:
     )
     alt = f"Means of networks by the torques that they learnt. {means}.".replace("-", "−")
     return illustrate(draw, alt, 7.0, 3.0, narrow_height=3 * 2.6)
+
+
+def known_torques() -> Table:
+    """Shapes, inertia read and answer to the knob, by the kind of torques that were learnt."""
+    damped, calm = (of_kinds(reading=setup.name) for setup in (JOINT_DAMPING, STATE_FEEDBACK))
+    rows = []
+    for name, kind in damped.items():
+        shapes = (f"{acceleration(name, long):.0f}" for long in (False, True))
+        told = []
+        for each in (kind, calm[name]):
+            told += [_within(_read(each), _read(each, "half"), 2), _within(*_knob(each), 3)]
+        own = f"{kind['truth'][0][0][2]:.1f}"
+        rows.append((name.replace("the arm", "this arm"), *shapes, own, *told))
+    heads = "acceleration, %: 4,000 epochs", "20,000 epochs", "inertia in it, kg m²"
+    damping = "inertia read", "knob", "state feedback: inertia read", "knob, state feedback"
+    return Table(("torques", *heads, *damping), rows)
+
+
+def _within(mean: float, half: float, digits: int) -> str:
+    return f"{round(mean, digits) + 0.0:.{digits}f} ± {half:.{digits}f}".replace("-", "−")
+
+
+def by_window() -> Table:
+    """Inertia read of networks of the arm, over the arm's own, and answer to the knob."""
+
+    def told(part: str, **wanted) -> str:
+        kind = _row(part, wanted)["kinds"]["the arm"]
+        return f"{_read(kind) / kind['truth'][0][0][2]:.2f}, {_knob(kind)[0]:.2f}"
+
+    rows = []
+    for reading in SETUPS:
+        cells = (told("grid", reading=reading, width=w, initial=INITIAL) for w in WINDOWS)
+        rows.append((f"{reading}, 4,000 epochs", *cells))
+    for setup in (JOINT_DAMPING, STATE_FEEDBACK):
+        longer = told("long", reading=setup.name, width=21)
+        rows.append((f"{setup.name}, 20,000 epochs", "–", longer, "–"))
+        solved = told("solved", reading=setup.name, width=21, method="solver")
+        rows.append((f"{setup.name}, solver", "–", solved, "–"))
+    return Table(("networks of this arm", *(f"window {w}" for w in WINDOWS)), rows)
+
+
+_WRITTEN = {
+    "unedited": "as trained", "written": "written", "retrained": "trained anew",
+    "turned sign": "opposite sign", "random filters": "random filters",
+    "rough filters": "rough filters", "one factor": "one factor",
+}  # fmt: skip
+
+
+def written_loads() -> Table:
+    """RMSS and tracking error, degrees, on the changed arm, by what was done to the networks."""
+    main = JOINT_DAMPING.name, 21, "descent"
+    shown = [
+        (reading, w, "descent", "3 kg")
+        for reading in (JOINT_DAMPING.name, STATE_FEEDBACK.name)
+        for w in WINDOWS
+    ]
+    shown += [(reading, 21, "solver", "3 kg") for reading in (main[0], STATE_FEEDBACK.name)]
+    shown += [(*main, change) for change in _changes(*main) if change not in ("own arm", "3 kg")]
+    rows = []
+    for reading, width, method, change in shown:
+        found = _changes(reading, width, method)[change]
+        cells = (
+            f"{significant(found['error'][name]['mean'], 2)} / "
+            f"{found['tracking'][name]['mean']:.2f}°"
+            for name in _WRITTEN
+        )
+        by = "" if method == "descent" else f", {method}"
+        rows.append((f"{change}; {reading}, {width}{by}", *cells))
+    return Table(("change; controller, window", *_WRITTEN.values()), rows)
+
+
+def _quoted() -> None:
+    """Numbers of the evidence page."""
+    (setting,) = (
+        x["setting"] for x in results.read("planted")["long"]
+        if x["setting"]["reading"] == JOINT_DAMPING.name
+    )  # fmt: skip
+    quote("planted-networks", setting["networks"])
+    quote("planted-days", setting["days"])
+    every_shift = every("shifted", "knob")
+    quote("planted-shifted-least", every_shift.min())
+    quote("planted-shifted-most", every_shift.max())
+    reach = {what: every("the arm", what).min() for what in ("M11", "knob")}
+    without = [name for name, kind in of_kinds().items() if not kind["truth"][0][0][2]]
+    beyond = [
+        np.any([every(name, what) >= least for what, least in reach.items()], 0) for name in without
+    ]
+    quote("planted-beyond", how_many(int(np.sum(beyond)), np.size(beyond)))
+    pencil = _row("control", {"reading": JOINT_DAMPING.name, "width": 21, "epochs": None})
+    quote("planted-pencil", _knob(pencil["kinds"]["the arm's mean by pencil"])[0])
+    calm = of_kinds(reading=STATE_FEEDBACK.name)["the arm"]
+    quote("planted-damping", calm["read"]["mean"][0][0][1])
+    quote("planted-damping-arm", calm["truth"][0][0][1])
+    rows = results.read("written")["rows"]
+    pairs = [
+        (row["changes"]["own arm"]["error"]["mean"], change["error"])
+        for row in rows
+        for name, change in row["changes"].items()
+        if name != "own arm"
+    ]
+    worse = [own for own, e in pairs if e["written"]["mean"] >= e["unedited"]["mean"]]
+    quote("planted-written-rows", len(pairs))
+    quote("planted-written-better", len(pairs) - len(worse))
+    quote("planted-written-own", min(worse))
+    real = [run["error"] for row in results.read("written-pendulum")["rows"]
+            for run in row["runs"].values()]  # fmt: skip
+    for name, model in (("alone", "inertia written"),
+                        ("gravity", "inertia written, gravity by formula")):  # fmt: skip
+        better = [np.mean(e[model]) < np.mean(e["unedited"]) for e in real]
+        quote(f"planted-pendulum-{name}", int(np.sum(better)))
+    quote("planted-pendulum-cases", len(real))
