@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from ddlib.figures.style import COLOURS, INK, Illustration, illustrate
 from ddlib.setups import INITIAL, JOINT_DAMPING, SETUPS, STATE_FEEDBACK, WINDOWS
-from ddlib.tables import Table, how_many, quote, significant
+from ddlib.tables import Table, how_many, quote
 from workshop.report import results
 
 KINDS = {
@@ -49,9 +49,9 @@ def _knob(kind: Mapping) -> tuple[float, float]:
     return tuple(float(kind["knobs"]["shape"][what][2][0][0]) for what in ("mean", "half"))
 
 
-def _read(kind: Mapping, what: str = "mean") -> float:
-    """The shoulder's inertia that is read, kg m², or the half of its interval."""
-    return float(kind["read"][what][0][0][2])
+def _read(kind: Mapping) -> float:
+    """The shoulder's inertia that is read, kg m²."""
+    return float(kind["read"]["mean"][0][0][2])
 
 
 def acceleration(kind: str, long: bool = False) -> float:
@@ -125,19 +125,17 @@ def known_torques() -> Table:
     damped, calm = (of_kinds(reading=setup.name) for setup in (JOINT_DAMPING, STATE_FEEDBACK))
     rows = []
     for name, kind in damped.items():
-        shapes = (f"{acceleration(name, long):.0f}" for long in (False, True))
-        told = []
+        shapes = ", ".join(f"{acceleration(name, long):.0f}" for long in (False, True))
+        told = [f"{kind['truth'][0][0][2]:.1f}"]
         for each in (kind, calm[name]):
-            told += [_within(_read(each), _read(each, "half"), 2), _within(*_knob(each), 3)]
-        own = f"{kind['truth'][0][0][2]:.1f}"
-        rows.append((name.replace("the arm", "this arm"), *shapes, own, *told))
-    heads = "acceleration, %: 4,000 epochs", "20,000 epochs", "inertia in it, kg m²"
-    damping = "inertia read", "knob", "state feedback: inertia read", "knob, state feedback"
-    return Table(("torques", *heads, *damping), rows)
+            told += [_minus(_read(each), 1), "{} ± {}".format(*(_minus(x, 3) for x in _knob(each)))]
+        rows.append((name.replace(" along", ",").replace("the arm", "this arm"), shapes, *told))
+    heads = "shapes, %", "kg m²", "read", "knob", "state feedback: read", "knob"
+    return Table(("torques", *heads), rows)
 
 
-def _within(mean: float, half: float, digits: int) -> str:
-    return f"{round(mean, digits) + 0.0:.{digits}f} ± {half:.{digits}f}".replace("-", "−")
+def _minus(value: float, digits: int) -> str:
+    return f"{round(value, digits) + 0.0:.{digits}f}".replace("-", "−")
 
 
 def by_window() -> Table:
@@ -161,9 +159,10 @@ def by_window() -> Table:
 
 _WRITTEN = {
     "unedited": "as trained", "written": "written", "retrained": "trained anew",
-    "turned sign": "opposite sign", "random filters": "random filters",
-    "rough filters": "rough filters", "one factor": "one factor",
+    "one factor": "one factor", "rough filters": "rough filters",
+    "random filters": "random filters", "turned sign": "opposite sign",
 }  # fmt: skip
+_TRACKED = ("unedited", "written", "retrained", "one factor")
 
 
 def written_loads() -> Table:
@@ -179,11 +178,12 @@ def written_loads() -> Table:
     rows = []
     for reading, width, method, change in shown:
         found = _changes(reading, width, method)[change]
-        cells = (
-            f"{significant(found['error'][name]['mean'], 2)} / "
-            f"{found['tracking'][name]['mean']:.2f}°"
-            for name in _WRITTEN
-        )
+        cells = []
+        for name in _WRITTEN:
+            told = f"{found['error'][name]['mean']:.2f}"
+            if name in _TRACKED:
+                told += f", {found['tracking'][name]['mean']:.1f}°"
+            cells.append(told)
         by = "" if method == "descent" else f", {method}"
         rows.append((f"{change}; {reading}, {width}{by}", *cells))
     return Table(("change; controller, window", *_WRITTEN.values()), rows)
