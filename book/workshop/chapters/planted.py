@@ -130,7 +130,7 @@ def known_torques() -> Table:
         for each in (kind, calm[name]):
             told += [_minus(_read(each), 1), "{} ± {}".format(*(_minus(x, 3) for x in _knob(each)))]
         rows.append((name.replace(" along", ",").replace("the arm", "this arm"), shapes, *told))
-    heads = "shapes, %", "kg m²", "read", "knob", "state feedback: read", "knob"
+    heads = "shapes, %", "inertia, kg m²", "read", "knob", "state feedback: read", "knob"
     return Table(("torques", *heads), rows)
 
 
@@ -167,26 +167,25 @@ _TRACKED = ("unedited", "written", "retrained", "one factor")
 
 def written_loads() -> Table:
     """RMSS and tracking error, degrees, on the changed arm, by what was done to the networks."""
-    main = JOINT_DAMPING.name, 21, "descent"
-    shown = [
-        (reading, w, "descent", "3 kg")
-        for reading in (JOINT_DAMPING.name, STATE_FEEDBACK.name)
-        for w in WINDOWS
-    ]
-    shown += [(reading, 21, "solver", "3 kg") for reading in (main[0], STATE_FEEDBACK.name)]
-    shown += [(*main, change) for change in _changes(*main) if change not in ("own arm", "3 kg")]
+    damped, calm = JOINT_DAMPING.name, STATE_FEEDBACK.name
+    main = damped, 21, "descent"
+    shown = {name: (*main, name) for name in _changes(*main) if name != "own arm"}
+    for reading, more in ((damped, ""), (calm, f", {calm}")):
+        for width in WINDOWS:
+            if (reading, width) != main[:2]:
+                shown[f"3 kg{more}, window {width}"] = reading, width, "descent", "3 kg"
+        shown[f"3 kg{more}, solver"] = reading, 21, "solver", "3 kg"
     rows = []
-    for reading, width, method, change in shown:
-        found = _changes(reading, width, method)[change]
+    for label, (*setting, change) in shown.items():
+        found = _changes(*setting)[change]
         cells = []
         for name in _WRITTEN:
             told = f"{found['error'][name]['mean']:.2f}"
             if name in _TRACKED:
                 told += f", {found['tracking'][name]['mean']:.1f}°"
             cells.append(told)
-        by = "" if method == "descent" else f", {method}"
-        rows.append((f"{change}; {reading}, {width}{by}", *cells))
-    return Table(("change; controller, window", *_WRITTEN.values()), rows)
+        rows.append((label, *cells))
+    return Table(("change", *_WRITTEN.values()), rows)
 
 
 def _quoted() -> None:
