@@ -1,6 +1,5 @@
 """Judges of answers that a lesson's own objects decide, on objects whose answers are known."""
 
-from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -67,14 +66,13 @@ def test_the_filter_with_the_recorded_torques_is_found_whatever_its_shape(capsys
     windows, true = rng.normal(size=(300, 4)), np.array([1.0, -2.0, 3.0, 0.5])
     windows -= windows.mean(0)
     torque = (windows @ true + 7.0).reshape(2, 150, 1)
-    six = np.array([0.5 * true, -true, rng.normal(size=4), true, 1.4 * true, 0 * true])
-    told = partial(judged, whose_filters, capsys=capsys, number=3)
-    given = six, windows, torque
-    assert told(4, *given).startswith("Right: its torques have an")
-    text = told(1, *given)
-    assert text.startswith("Wrong: its torques miss the arm's by an RMSS of 0.50.")
-    assert told(2, *given).startswith("Wrong: its torques go down")
-    assert told(7, *given).startswith("Wrong: the filters are count")
+    six = np.array([0.5 * true, -true, rng.normal(size=4), 1.1 * true, 1.4 * true, 0 * true])
+    answers = {0.1: "Right: filter 4 is the arm's; filter 5 comes next, 0.40.",
+               0.5: "Wrong: this filter misses by as much", 2.0: "Wrong: its torques go down",
+               0.1 * torque.std(): "Wrong: divide by", 7.0: "Wrong: what do the"}  # fmt: skip
+    for answer, begins in answers.items():
+        given = answer, six, windows, torque
+        assert judged(whose_filters, *given, capsys=capsys, number=3).startswith(begins)
 
 
 def test_half_of_the_inertia_is_left_where_the_penalty_is_the_variance(capsys):

@@ -228,20 +228,22 @@ def _exercise(number: int, given, *others) -> Exercise:
         answers = np.asarray(given) @ X.T
         off = np.sqrt(((answers - torque) ** 2).mean(1)) / torque.std()
         along = answers @ torque
-        best, *rest = np.argsort(off)
+        best, second, *_ = np.argsort(off)
 
         def why(k):
             if along[k] < 0:
                 return "its torques go down where the arm's go up, whatever its shape."
-            return f"its torques miss the arm's by an RMSS of {off[k]:.2f}. Another misses by less."
+            return "this filter misses by as much, but another one misses by less."
 
+        slips = [(off[k], why(k)) for k in range(len(off)) if k != best]
+        slips.append((off[best] * torque.std(), "divide by the torque's standard deviation."))
         return Exercise(
             "number",
-            1 + int(best),
-            f"its torques have an RMSS of {off[best]:.2f}, the next best {off[rest[0]]:.2f}.",
-            [(1 + int(k), why(k)) for k in rest],
-            "the filters are counted from 1 to 6.",
-            tolerance=1e-6,
+            off[best],
+            f"filter {1 + best} is the arm's; filter {1 + second} comes next, {off[second]:.2f}.",
+            slips,
+            "what do the torques of each filter leave of the arm's?",
+            tolerance=2e-3,
         )
     else:
         slips = (
