@@ -15,6 +15,7 @@ from .style import (
     FAINT as FAINT,
     INK as INK,
     JOINTS as JOINTS,
+    ROLES as ROLES,
     Illustration as Illustration,
     check_label as check_label,
     illustrate as illustrate,

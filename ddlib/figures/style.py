@@ -42,6 +42,19 @@ FAINT = "#7f7f7f"
 COLOURS = ("#2f7fd1", "#d4680b", "#219a6c", "#c2559d", "#8c7ae6", "#a08100")
 """Line colours, each with a contrast of 3:1 or more on white and on near-black."""
 
+ROLES = {
+    "shoulder": ("#1f76d2", "#4f9ff0"),
+    "elbow": ("#bd4f00", "#f0803a"),
+    "network": ("#a1105e", "#ff6bb0"),
+    "window": ("#8f7000", "#ead36b"),
+    "constant": ("#6b7685", "#98a4b3"),
+    "even": ("#2f6f0d", "#9bdc6a"),
+    "odd": ("#4a1fa8", "#cbb5ff"),
+    "wanted": ("#007f86", "#2ec4d6"),
+}
+"""What a colour means, on light and on dark pages; a figure is drawn in the first. Ink is what was
+measured."""
+
 DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)))
 """Line styles that go with the colours, so that colour is never the only difference."""
 
@@ -153,9 +166,14 @@ class Illustration:
                 self.figure.savefig(content, dpi=dpi, **options)
             write_whole(path, content.getvalue())
             return
-        svg = self.svg.replace("currentColor", "#1a1a1a")
+        svg = fixed(self.svg)
         svg = svg.replace(' style="', ' style="background:#ffffff;', 1)
         write_whole(path, svg)
+
+
+def fixed(svg: str) -> str:
+    """A figure's SVG in the colours of a light page, wherever it stands."""
+    return _ROLE.sub(r"\1", svg.replace("currentColor", "#1a1a1a"))
 
 
 def illustrate(
@@ -393,6 +411,8 @@ def _inline(svg: str, alt: str) -> str:
     for element in elements:
         for name, value in list(element.items()):
             new = _LINK.sub(own, value).replace(INK, "currentColor")
+            for role, (light, _) in ROLES.items():
+                new = new.replace(light, f"var(--dd-{role}, {light})")
             if name == "id":
                 new = f"{prefix}-{value}" if value in used else None
             elif name in ("d", "x", "y", "transform"):
@@ -414,6 +434,7 @@ def _inline(svg: str, alt: str) -> str:
 
 _XLINK = "http://www.w3.org/1999/xlink"
 _LINK = re.compile(r"(?:^|(?<=url\())#([^)\s]+)")  # in an attribute: to a part of the picture
+_ROLE = re.compile(r"var\(--dd-\w+, (#\w+)\)")  # a colour that follows the page
 _SIZE = re.compile(r"(?<=font-size: )[\d.]+(?=px)|(?<=font: )[\d.]+(?=px)")
 # A line of no length, which is a dot if its ends are round
 _DOT = re.compile(r"M (\S+) (\S+)\s+L \1 \2\s*(?=M|$)")

@@ -18,6 +18,7 @@ from ddlib.figures.style import (
     INK,
     JOINTS,
     NARROW,
+    ROLES,
     Illustration,
     illustrate,
     legend_above,
@@ -280,7 +281,7 @@ def _row_and_parts(axis: Axes, parts, step: float, room: float) -> None:
     axis.plot(x, f, color=INK, lw=2.8, alpha=0.55, label="weights")
     for k, (name, y) in enumerate({"constant": constant, "even": parts.even,
                                    "odd": parts.odd}.items()):  # fmt: skip
-        look = {"color": COLOURS[(2, 0, 1)[k]], "ls": (":", "-", "--")[k], "lw": 1.5}
+        look = {"color": ROLES[name][0], "ls": ("-.", "-", "--")[k], "lw": 1.5}
         axis.plot(x, y, label=name, **look)
     low, high = axis.get_ylim()
     ticks = MaxNLocator(5).tick_values(low, high)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from ddlib.figures import COLOURS
+from ddlib.figures import COLOURS, ROLES
 
 _STATIC = Path(__file__).with_name("static")
 _IMPORT = re.compile(r'^import (?:\{[^}]*\} from )?"([^"]+)";\n', re.M)
@@ -41,9 +41,10 @@ def styles(*names: str | Path) -> str:
     """The style sheet of all widgets, then others of the folder `static` or by full paths.
 
     Colours are those of figures: ``var(--c0)`` and so on, and ``var(--colour)`` in what has the
-    class ``c0`` and so on.
+    class ``c0`` and so on; ``var(--even)`` and so on by their roles.
     """
     hues = "".join(f"--c{k}: {colour}; " for k, colour in enumerate(COLOURS))
+    hues += "".join(f"--{role}: light-dark({a}, {b}); " for role, (a, b) in ROLES.items())
     own = [f".ddlib-curves .c{k} {{ --colour: var(--c{k}); }}" for k in range(len(COLOURS))]
     sheets = [(_STATIC / name).read_text(encoding="utf-8") for name in ("curves.css", *names)]
     return "\n".join([f".ddlib-curves {{ {hues}}}", *own, *sheets])

@@ -11,6 +11,7 @@ import traitlets
 from matplotlib.ticker import MultipleLocator
 
 from ddlib.figures import COLOURS, DASHES, illustrate
+from ddlib.figures.style import fixed
 from ddlib.widgets.parts.panels import Pad, Panel
 from ddlib.widgets.parts.parameters import Parameter
 
@@ -63,8 +64,7 @@ def still_picture(
 
 def encoded(svg: str) -> str:
     """A figure's SVG with fixed, light colours, in base64: what follows `START`."""
-    svg = svg.replace("currentColor", "#1a1a1a")
-    svg = svg.replace('style="', 'style="background:#fff;', 1)
+    svg = fixed(svg).replace('style="', 'style="background:#fff;', 1)
     return base64.b64encode(svg.encode()).decode()
 
 

@@ -134,7 +134,7 @@ def _arguments() -> dict[str, dict]:
         },
         "FilterBuilder": {"unit": np.arange(-10, 11.0) ** 2},
         "FilterExplorer": {"models": models, "members": (0, 1), "step": 0.01},
-        "FilterFold": {"rows": {"up": rows[0, 0], "down": -rows[0, 0]}, "step": 0.01},
+        "FoldBench": {"rows": {"up": rows[0, 0]}, "step": 0.01, "motion": np.zeros((60, 3))},
         "HiddenTorque": {"recording": last},
         "SlidingWindow": {"models": single, "recording": last},
         "ThrownArm": {"model": single[7], "code": "motion = {motion}"},

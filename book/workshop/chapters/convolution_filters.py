@@ -21,14 +21,14 @@ from ddlib.figures.style import (
     illustrate,
     legend_above,
 )
-from ddlib.setups import JOINT_DAMPING
+from ddlib.setups import JOINT_DAMPING, split, true_states
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, quote
 from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.chapters.index import both
 from workshop.chapters.widgets import builder
+from workshop.chapters.widgets.bench import FoldBench as FoldBench
 from workshop.chapters.widgets.builder import FilterBuilder as FilterBuilder
-from workshop.chapters.widgets.fold import FilterFold as FilterFold
 from workshop.report import results
 from workshop.report.measures import filter_trial as trial
 
@@ -101,6 +101,11 @@ def puzzles() -> dict[str, np.ndarray]:
     for label, figure in {"A": "Figure 5-6", "B": "Figure 5-4", "C": "Figure 5-5"}.items():
         rows[label] = gain[_REPORT[figure][1]] * filters[figure]
     return rows
+
+
+def motion() -> np.ndarray:
+    """Angle, velocity and acceleration of the shoulder on trajectory 6, ``(time, 3)``, rad and s."""
+    return true_states(split(JOINT_DAMPING.record())[1], JOINT_DAMPING)[:, 0]
 
 
 def named_in_trial(name: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
