@@ -7,12 +7,14 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
+from book_pages import ROOT
 from matplotlib.colors import rgb_to_hsv, to_rgb
 from pictures import SVG, black_or_white, check_sound, drawn, ids, size, words
 from PIL import Image
 from pypdf import PdfReader
 
-from ddlib.figures import COLOURS, DASHES, FAINT, illustrate, style
+from ddlib.figures import COLOURS, DASHES, FAINT, ROLES, illustrate, style
+from ddlib.figures.style import fixed
 
 
 def draw(figure):
@@ -51,6 +53,19 @@ def test_colours_are_seen_in_light_and_in_dark_and_never_the_only_difference():
     hues = rgb_to_hsv([to_rgb(colour) for colour in COLOURS])[:, 0]
     # captions call them so: orange, ochre, green, blue, violet, pink
     assert np.argsort(hues).tolist() == [1, 5, 2, 0, 4, 3]
+
+
+def test_roles_are_legible_and_the_same_in_figures_and_in_the_page_s_style_sheet():
+    style = (ROOT / "book" / "_static" / "book.css").read_text(encoding="utf-8")
+    for role, (light, dark) in ROLES.items():
+        assert contrast(light, "#ffffff") >= 4.5 and contrast(dark, "#16191d") >= 4.5
+        assert f"--dd-{role}: {dark};" in style
+
+    def even(figure):
+        figure.subplots().plot([0, 1], color=ROLES["even"][0])
+
+    made = illustrate(even, "A line.")
+    assert "var(--dd-even, #2f6f0d)" in made.svg and "var(" not in fixed(made.svg)
 
 
 @pytest.mark.parametrize("make", [draw, formulas])

@@ -104,7 +104,7 @@ def puzzles() -> dict[str, np.ndarray]:
 
 
 def motion() -> np.ndarray:
-    """Angle, velocity and acceleration of the shoulder on trajectory 6, ``(time, 3)``, rad and s."""
+    """Angle, velocity, acceleration of the shoulder on trajectory 6, ``(time, 3)``, rad and s."""
     return true_states(split(JOINT_DAMPING.record())[1], JOINT_DAMPING)[:, 0]
 
 

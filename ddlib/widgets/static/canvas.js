@@ -20,11 +20,17 @@ export function sheet(height, label = "") {
   return place;
 }
 
+const TONES = ["ink", "soft", "line", "paper", "shoulder", "elbow", "network", "window", "constant", "even", "odd"];
+
 // The colours of the page, by the names of their variables.
 export function coloursOf(el) {
-  const style = getComputedStyle(el);
-  const names = ["ink", "soft", "line", "paper", "c0", "c1", "c2", "c3"];
-  return Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
+  const probe = el.appendChild(make("span"));
+  const colours = TONES.map((name) => {
+    probe.style.color = `var(--${name})`;
+    return [name, getComputedStyle(probe).color];
+  });
+  probe.remove();
+  return Object.fromEntries(colours);
 }
 
 export function stroke(pen, colour, width, dash = []) {

@@ -199,7 +199,7 @@ function unitSheet(spec) {
       let right = left + wide;
       for (const j of [...JOINTS].reverse()) {
         const name = SHORT[spec.classes[names[2 * c + j]]] ?? (over ? "none" : "");
-        write(name, right, top + 9, "right", colours[j ? "c2" : "c0"]);
+        write(name, right, top + 9, "right", colours[j ? "elbow" : "shoulder"]);
         right -= name ? pen.measureText(name).width + 7 : 0;
       }
       pen.font = "11px system-ui, sans-serif";
@@ -216,7 +216,7 @@ function unitSheet(spec) {
         const x = (i) => left + (i / (f.length - 1)) * wide;
         pen.beginPath();
         f.forEach((w, i) => (i ? pen.lineTo(x(i), y(w)) : pen.moveTo(x(i), y(w))));
-        const colour = colours[j ? "c2" : "c0"];
+        const colour = colours[j ? "elbow" : "shoulder"];
         const named = SHORT[spec.classes[names[2 * c + j]]] !== undefined;
         stroke(pen, colour, named ? 2.6 : 1.3, j ? [5, 3] : []);
       }

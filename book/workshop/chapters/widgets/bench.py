@@ -1,4 +1,4 @@
-"""A row of weights as a strip to fold, a joint's path as a wire to bend, and what the row makes of it."""
+"""A row of weights as a strip to fold, and a joint's path under it as a wire to bend."""
 
 from __future__ import annotations
 
@@ -75,12 +75,13 @@ class FoldBench(PageWidget):
     @t.validate("row")
     def _known(self, proposal):
         if proposal.value not in self._rows:
-            raise t.TraitError(f"row must be among {', '.join(self._rows)}, got {proposal.value!r}")
+            known = ", ".join(self._rows)
+            raise t.TraitError(f"row must be among {known}, got {proposal.value!r}")
         return proposal.value
 
     @property
     def products(self) -> np.ndarray:
-        """Each part times the angles (rad) under it, ``(part, width)``; their sums fill the jars."""
+        """Each part times the angles (rad) under it, ``(part, width)``; sums fill the jars."""
         f = self._rows[self.row]
         parts = decompose(f)
         whole = np.stack([np.broadcast_to(parts.constant, f.shape), parts.even, parts.odd])

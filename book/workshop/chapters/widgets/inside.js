@@ -65,10 +65,10 @@ export function insideOf(world, spec, id) {
   // The row, and what it is folded into
   const drawing = netOf(spec.network.layout.hidden);
   const kinds = [
-    { name: "what is left", colour: "c0" },
-    { name: "constant", colour: "c3" },
-    { name: "line", colour: "c1" },
-    { name: "parabola", colour: "c2" },
+    { name: "what is left", colour: "network" },
+    { name: "constant", colour: "constant" },
+    { name: "line", colour: "odd" },
+    { name: "parabola", colour: "even" },
   ];
   for (const kind of kinds) {
     kind.title = make("span");
@@ -82,16 +82,15 @@ export function insideOf(world, spec, id) {
   );
 
   // What line and parabola measure
-  const measured = { colour: "c1", width: 2, dash: [6, 3] };
   const charts = [
-    ["velocity", "rad/s", "line", 1, (s) => s.v[chosen.joint], (s) => s.rates?.[chosen.joint]],
-    ["acceleration", "rad/s²", "parabola", 8, (s) => s.a[chosen.joint], (s) => s.bends?.[chosen.joint]],
-  ].map(([what, unit, shape, high, truth, of]) => {
-    const lines = [{ colour: "ink", width: 2.5, dash: [], of: truth }, { ...measured, of }];
+    ["velocity", "rad/s", "line", "odd", 1, (s) => s.v[chosen.joint], (s) => s.rates?.[chosen.joint]],
+    ["acceleration", "rad/s²", "parabola", "even", 8, (s) => s.a[chosen.joint], (s) => s.bends?.[chosen.joint]],
+  ].map(([what, unit, shape, colour, high, truth, of]) => {
+    const lines = [{ colour: "ink", width: 2.5, dash: [], of: truth }, { colour, width: 2, dash: [6, 3], of }];
     const chart = timeChart({ height: 110, label: `${what} over three seconds`, low: -high, high, lines, bottom: true });
     const title = make("div", { class: "title" });
     const legend = make("div", { class: "legend" });
-    legend.append(keyOf("ink", what), keyOf("c1 dashed", `from the ${shape}`));
+    legend.append(keyOf("ink", what), keyOf(`${colour} dashed`, `from the ${shape}`));
     return { chart, title, quantity: `${what}, ${unit}`, el: make("div", {}, title, legend, chart.el) };
   });
 

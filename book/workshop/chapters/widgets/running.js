@@ -101,15 +101,15 @@ export function strip({ height, label, width: samplesInWindow, lows, highs }) {
     pen.beginPath();
     pen.roundRect(from, 3, right - from + pitch / 2 + 2, height - 6, 6);
     pen.globalAlpha = 0.12;
-    pen.fillStyle = colours.c1;
+    pen.fillStyle = colours.window;
     pen.fill();
     pen.globalAlpha = 1;
-    stroke(pen, colours.c1, 2);
+    stroke(pen, colours.window, 2);
     const middle = right - (samplesInWindow >> 1) * pitch;
     pen.beginPath();
     pen.moveTo(middle, 4);
     pen.lineTo(middle, height - 4);
-    stroke(pen, colours.c1, 1, [3, 3]);
+    stroke(pen, colours.window, 1, [3, 3]);
     pen.save();
     pen.beginPath();
     pen.rect(left - 4, 0, width, height);
@@ -124,7 +124,7 @@ export function strip({ height, label, width: samplesInWindow, lows, highs }) {
       }
       ranges.push([a, b]);
       const [top, floor] = [16 + (j * height) / 2, height / 2 - 8 + (j * height) / 2];
-      pen.fillStyle = colours[j ? "c1" : "c0"];
+      pen.fillStyle = colours[j ? "elbow" : "shoulder"];
       for (let i = first; i < samples.length; i++) {
         const x = right - (samples.length - 1 - i + phase) * pitch;
         const y = top + ((b - samples[i].q[j]) / (b - a)) * (floor - top);
@@ -140,7 +140,7 @@ export function strip({ height, label, width: samplesInWindow, lows, highs }) {
     pen.textBaseline = "middle";
     pen.textAlign = "left";
     JOINTS.forEach((j) => {
-      pen.fillStyle = colours[j ? "c1" : "c0"];
+      pen.fillStyle = colours[j ? "elbow" : "shoulder"];
       const [low, high] = ranges[j].map((x) => format(x));
       pen.fillText(`${j ? "elbow" : "shoulder"}, ${low} to ${high}`, 0, 8 + (j * height) / 2);
     });

@@ -108,7 +108,7 @@ function build({ model, el }) {
       high: spec.torques[j],
       lines: [
         { colour: "ink", width: 2.5, of: (s) => s.tau[j] },
-        { colour: "c1", width: 2, dash: [6, 3], of: (s) => s.net?.[j] },
+        { colour: "network", width: 2, dash: [6, 3], of: (s) => s.net?.[j] },
       ],
       bottom: j === 1,
     }),
@@ -121,7 +121,7 @@ function build({ model, el }) {
   const outside = make("p", { class: "outside", "aria-hidden": "true" });
   const errors = make("p", { class: "remark errors" });
   const legend = make("div", { class: "legend" });
-  legend.append(keyOf("ink", "true"), keyOf("c1 dashed", "network, from positions alone"));
+  legend.append(keyOf("ink", "true"), keyOf("network dashed", "network, from positions alone"));
   function tell() {
     const rounded = (x) => x.toFixed(1);
     const [[s, ts], [e, te]] = world.errors();
