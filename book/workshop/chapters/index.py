@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 from matplotlib.patches import Rectangle
@@ -23,7 +24,7 @@ from workshop.report.measures import filter_trial as trial
 
 WIDTH = 21
 _SHOWN = 150  # samples of the motion
-_BLUE, _ORANGE, _GREEN, _PINK, *_ = figures.COLOURS
+_TONE = SimpleNamespace(**{role: light for role, (light, _) in figures.ROLES.items()})
 
 
 def both(weights: Weights) -> tuple[int, int]:
@@ -101,28 +102,30 @@ def _inertias() -> dict[str, float]:
 def _dynamics(axis):
     links = _motion()["hand"]
     for k, alpha in ((0, 0.3), ((_window().start + _window().stop) // 2, 0.6), (-1, 1.0)):
-        axis.plot(*np.vstack([[0, 0], links[k]]).T, "o-", color=_BLUE, alpha=alpha, ms=5, lw=3)
+        joints = np.vstack([[0, 0], links[k]])
+        for link, colour in enumerate((_TONE.shoulder, _TONE.elbow)):
+            axis.plot(*joints[link : link + 2].T, "o-", color=colour, alpha=alpha, ms=5, lw=3)
     axis.plot(*links[:, 1].T, color=figures.FAINT, lw=1)
-    axis.plot(*links[_window(), 1].T, color=_ORANGE, lw=3.5)
+    axis.plot(*links[_window(), 1].T, color=_TONE.window, lw=3.5)
     axis.set(aspect="equal", xlim=(-0.05, 1.0), ylim=(-0.75, 0.05))
 
 
 def _feedback(axis):
-    axis.plot(_motion()["wanted"][:, 0], "--", color=figures.INK, lw=1.2)
-    axis.plot(_motion()["q"][:, 0], color=_BLUE, lw=2)
+    axis.plot(_motion()["wanted"][:, 0], "--", color=_TONE.wanted, lw=1.2)
+    axis.plot(_motion()["q"][:, 0], color=_TONE.shoulder, lw=2)
 
 
 def _feedforward(axis):
     axis.axhline(0, color=figures.FAINT, lw=0.7)
     torque = _motion()["beforehand"][:, 0]
-    axis.fill_between(np.arange(_SHOWN), 0, torque, color=_ORANGE, alpha=0.35, lw=0)
-    axis.plot(torque, color=_ORANGE, lw=2)
+    axis.fill_between(np.arange(_SHOWN), 0, torque, color=_TONE.wanted, alpha=0.35, lw=0)
+    axis.plot(torque, "--", color=_TONE.wanted, lw=2)
     axis.plot(_motion()["tau"][:, 0], color=figures.INK, lw=1)
 
 
 def _recording(axis):
     at = np.arange(0, _SHOWN, 4)
-    for joint, colour in enumerate((_BLUE, _ORANGE)):
+    for joint, colour in enumerate((_TONE.shoulder, _TONE.elbow)):
         axis.plot(at, _motion()["q"][at, joint], ".", color=colour, ms=4)
 
 
@@ -130,22 +133,23 @@ def _unit(axis):
     row = carried_row()
     at = np.linspace(0, 1, WIDTH)
     for x, weight in zip(at, row / np.abs(row).max()):
-        colour = _ORANGE if weight > 0 else figures.INK
+        colour = _TONE.network if weight > 0 else figures.INK
         axis.plot([x, 0.5], [0, 0.8], color=colour, lw=2.5 * abs(weight), zorder=1)
     axis.plot([0.5, 0.5], [0.8, 1.2], color=figures.INK, lw=1.5, zorder=1)
-    axis.plot(at, 0 * at, "o", color=_BLUE, ms=4.5)
-    axis.plot(0.5, 0.8, "o", ms=13, mfc=_ORANGE, mec=figures.INK)
+    axis.plot(at, 0 * at, "o", color=_TONE.shoulder, ms=4.5)
+    axis.plot(0.5, 0.8, "o", ms=13, mfc=_TONE.network, mec=figures.INK)
     axis.text(0.6, 0.95, "unit", fontsize=8.5)
     axis.set(ylim=(-0.15, 1.2))
 
 
 def _network_at_work(axis):
     q, tau, predicted = (_motion()[name][:, 0] for name in ("q", "tau", "predicted"))
-    axis.plot(1.3 + (q - q.max()) / np.ptp(q), color=_BLUE, lw=2)
-    axis.add_patch(Rectangle((_window().start, 0.25), WIDTH, 1.1, color=_ORANGE, alpha=0.25, lw=0))
+    axis.plot(1.3 + (q - q.max()) / np.ptp(q), color=_TONE.shoulder, lw=2)
+    look = {"color": _TONE.window, "alpha": 0.25, "lw": 0}
+    axis.add_patch(Rectangle((_window().start, 0.25), WIDTH, 1.1, **look))
     centre = _window().start + WIDTH // 2
     axis.plot(0.75 * tau / np.ptp(tau) - 0.4, color=figures.INK, lw=1)
-    axis.plot(0.75 * predicted[: centre + 1] / np.ptp(tau) - 0.4, color=_ORANGE, lw=2.5)
+    axis.plot(0.75 * predicted[: centre + 1] / np.ptp(tau) - 0.4, "--", color=_TONE.network, lw=2.5)
     axis.annotate(
         "", (centre, 0.75 * predicted[centre] / np.ptp(tau) - 0.36), (centre, 0.3),
         arrowprops={"arrowstyle": "->", "color": figures.INK},
@@ -158,26 +162,25 @@ def _squares(axis):
     rows = weights[:, joint] / np.abs(weights[:, joint]).max(-1, keepdims=True)
     axis.add_patch(Rectangle((-1, -1), WIDTH + 1, len(rows) + 1, facecolor="#8c8c8c", lw=0))
     dots(axis, rows, 0, 0, 1, 1, 1)
-    axis.add_patch(Rectangle((-0.8, unit - 0.6), WIDTH + 0.6, 1.2, fill=False, ec=_ORANGE, lw=2.5))
+    frame = {"fill": False, "ec": _TONE.network, "lw": 2.5}
+    axis.add_patch(Rectangle((-0.8, unit - 0.6), WIDTH + 0.6, 1.2, **frame))
     axis.set(xlim=(-1.2, WIDTH + 0.2), ylim=(-1.2, len(rows) + 0.2))
 
 
 def _folded(axis):
     row, along = carried_row(), basis(WIDTH)
     axis.axhline(0, color=figures.FAINT, lw=0.7)
-    axis.vlines(np.arange(WIDTH), 0, row, color=_BLUE, alpha=0.45, lw=1.5)
-    axis.plot(row, "o", color=_BLUE, alpha=0.45, ms=3.5)
-    for degree, colour in ((1, _ORANGE), (2, _GREEN)):
+    axis.vlines(np.arange(WIDTH), 0, row, color=_TONE.network, alpha=0.45, lw=1.5)
+    axis.plot(row, "o", color=_TONE.network, alpha=0.45, ms=3.5)
+    for degree, colour in ((1, _TONE.odd), (2, _TONE.even)):
         axis.plot(along[degree] * (along[degree] @ row), color=colour, lw=2.2)
 
 
 def _whose(axis):
     axis.axhline(0, color=figures.FAINT, lw=0.7)
-    for name, row, colour, x in (
-        ("A", carried_row(), _BLUE, 0),
-        ("B", unrelated_row(), _PINK, WIDTH + 3),
-    ):
-        axis.plot(x + np.arange(WIDTH), row / np.abs(row).max(), "o-", color=colour, ms=2.5, lw=1.2)
+    look = {"color": _TONE.network, "ms": 2.5, "lw": 1.2}
+    for name, row, x in (("A", carried_row(), 0), ("B", unrelated_row(), WIDTH + 3)):
+        axis.plot(x + np.arange(WIDTH), row / np.abs(row).max(), "o-", **look)
         axis.text(x + 1, -0.9, name, fontsize=10, fontweight="bold")
     axis.set(ylim=(-1.1, 1.1))
 
@@ -186,9 +189,11 @@ def _area(axis):
     along = basis(WIDTH)[2]
     parabola = along * np.sign(along @ carried_row())
     x = np.linspace(0, 1, WIDTH)
-    axis.fill_between(x * 8, 4.2, 4.2 + 2.5 * parabola / np.ptp(parabola), color=_GREEN, alpha=0.5)
+    axis.fill_between(
+        x * 8, 4.2, 4.2 + 2.5 * parabola / np.ptp(parabola), color=_TONE.even, alpha=0.5
+    )
     for k, (name, value) in enumerate(_inertias().items()):
-        axis.barh(2 - k, value, color=(_GREEN, _ORANGE, _BLUE)[k], height=0.7)
+        axis.barh(2 - k, value, color=(_TONE.even, _TONE.network, figures.INK)[k], height=0.7)
         axis.text(value + 0.2, 2 - k, f"{name} {value:.1f}", fontsize=8.5, va="center")
     axis.text(8.3, 4.2, "kg m²", fontsize=8.5, va="center")
     axis.set(xlim=(0, 12), ylim=(-0.6, 6))
@@ -226,7 +231,7 @@ def station(lesson: str) -> figures.Illustration:
         axis = figure.subplots()
         picture(axis)
         if picture in _BANDED:
-            axis.axvspan(_window().start, _window().stop - 1, color=_ORANGE, alpha=0.2, lw=0)
+            axis.axvspan(_window().start, _window().stop - 1, color=_TONE.window, alpha=0.25, lw=0)
         axis.set_xticks([])
         axis.set_yticks([])
         axis.grid(False)
