@@ -48,10 +48,9 @@ function playedOf(parts, x, [q, v, a]) {
 }
 
 function build({ model, el }) {
-  const { key, title, step, reach, rows, motion } = model.get("spec");
+  const { key, title, step, reach, labels, rows, motion } = model.get("spec");
   dress(el, title, "ddlib-bench");
   const get = (name) => model.get(name);
-  const labels = Object.keys(rows);
   const n = rows[labels[0]].length;
   const half = (n - 1) / 2;
   const x = rows[labels[0]].map((_, k) => step * (k - half));

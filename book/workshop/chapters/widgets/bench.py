@@ -59,6 +59,7 @@ class FoldBench(PageWidget):
             "title": "Fold a row of weights",
             "step": step,
             "reach": REACH,
+            "labels": list(self._rows),
             "rows": {label: f.tolist() for label, f in self._rows.items()},
             "motion": np.round(np.transpose(motion), 5).tolist(),
         }
