@@ -49,6 +49,7 @@ EVERY = (*RIGID, "rotor", "b_sin", *POSE, *FRICTION, *OFFSETS)
 SAMPLES = 60  # of a bump, up to twice as many: more tell a check nothing
 LONGEST = 24  # bumps' widths in a piece of a run
 MOST_LAG = 8  # samples
+MOST_LOG = 3.0  # of the ratio of two torques' scales: 20 times
 SURE = 8.0  # logarithm of a likelihood ratio: four standard deviations
 LEAST_ANGLE = (2.0, 4.0)  # degrees of a zero that matter: sines, and cosines
 
@@ -133,8 +134,9 @@ def _motions(recording, names) -> Iterator[Finding]:
     model = _model(pieces, bumps)
     if not model:
         return
-    found = [*_other_reading(pieces, bumps, model.fit)] if both else []
-    found = found or [*_sizes(model, works)]
+    scaled = model.best(partial(_smaller_elbow, pieces.tau), MOST_LOG)[2] if both else model
+    found = [*_other_reading(pieces, bumps, model.fit, scaled.fit.share)] if both else []
+    found = found or [*_sizes(scaled if scaled.fit.share < 0.8 * model.fit.share else model, works)]
     yield from found
     if not found:
         heavy = _hangs(model)
@@ -261,7 +263,10 @@ class _Model:
         def left(number):
             return replace(self, tau=torque(number)).fit.left
 
-        number, near = minimize_scalar(left, bounds=(-most, most), method="bounded").x, most / 25
+        near = most / 25  # there may be several valleys
+        deepest = min(near * np.arange(-24, 25), key=left)
+        bounds = deepest - near, deepest + near
+        number = minimize_scalar(left, bounds=bounds, method="bounded").x
         bend = (left(number - near) + left(number + near) - 2 * left(number)) / near**2
         error = bend**-0.5 if bend > 0 else np.inf
         return number, error, replace(self, tau=torque(number))
@@ -320,12 +325,13 @@ _ORDERS = {  # of the angles and of the torques
 _ELBOWS = {1: np.eye(2), -1: np.diag([1, -1]), 0: np.array([[1, -1], [0, 1]])}  # 0: absolute
 
 
-def _other_reading(pieces, bumps, fit) -> Iterator[Finding]:
+def _other_reading(pieces, bumps, fit, scaled) -> Iterator[Finding]:
     """What was read wrongly, if the equations leave much less over when it is read otherwise.
 
-    Each further fault must take away a tenth of what is left.
+    Each further fault must take away a tenth of what is left, and more than another scale of the
+    elbow's torque does, which leaves the share `scaled`.
     """
-    least, told = 0.8 * fit.share, ()
+    least, told = min(0.8 * fit.share, 1.1 * scaled), ()
     units = [(1.0, np.pi / 180)[: 1 + far] for far in np.ptp(pieces.q, axis=1).max(0) > np.pi]
     for unit, order, elbow in product([*product(*units)], (1, -1), _ELBOWS):
         q = (pieces.q * unit)[..., ::order] @ _ELBOWS[elbow]
@@ -446,7 +452,7 @@ def _explained(model, hangs, both) -> tuple[_Model, dict[str, float]]:
         }  # fmt: skip
         if both:
             factors = partial(_smaller_elbow, model.tau)
-            options["scale of a torque"] = model.best(factors, 1.5)[2]
+            options["scale of a torque"] = model.best(factors, MOST_LOG)[2]
         kind = min(options, key=lambda kind: options[kind].fit.left)
         gain = model.fit.share / options[kind].fit.share
         if kind in gains or gain < 1.03 or model.fit.left - options[kind].fit.left < SURE:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from ddlib._check import number, told
@@ -40,7 +42,10 @@ def are_units(row: list[str]) -> bool:
 
 
 def in_head(head: str, quantity: str) -> tuple[str, str | None]:
-    """Name and unit of a head like "q1 [deg]", "time_ms", "tau1/Nm"; no unit: None."""
+    """Name and unit of a head like "q1 [deg]", "time_ms", "tau1/Nm"; no unit: None.
+
+    A head that speaks of a current is in amperes.
+    """
     for opening, closing in ("[]", "()"):
         name, bracket, unit = head.removesuffix(closing).rpartition(opening)
         if bracket and head.endswith(closing):
@@ -49,7 +54,8 @@ def in_head(head: str, quantity: str) -> tuple[str, str | None]:
         name, _, unit = head.rpartition(sign)
         if name and unit != "a" and spelled(unit) in _UNITS.get(_KINDS.get(quantity), {}):
             return name.strip(), spelled(unit)
-    return head, None
+    currents = {"current", "currents"}.intersection(re.split(r"[^a-z]+", head.lower()))
+    return head, "A" if currents and _KINDS.get(quantity) == "torque" else None
 
 
 def size_of(unit, quantity: str) -> float:

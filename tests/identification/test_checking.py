@@ -141,6 +141,7 @@ BY_EQUATIONS = {
     "sign of an angle": changed(lambda q: q * [1, -1]),
     "sign of an angle, the shoulder's": changed(lambda q: q * [-1, 1]),
     "scale of a torque": changed(tau=lambda tau: tau * [1, 1.25]),
+    "scale of a torque, much": changed(tau=lambda tau: tau * [1, 6]),
     "scale of a torque, the shoulder's": changed(tau=lambda tau: tau * [1.25, 1]),
     "geared motor": geared,
     "torque offset": changed(tau=lambda tau: tau + 0.3 * tau.std((0, 1))),
@@ -187,6 +188,15 @@ def test_gravity_that_is_not_named_is_wrong():
         for seed in range(FEW):
             hangs, recording = made(seed)
             assert ("gravity" in kinds(check_recording(recording), "wrong")) == hangs
+
+
+def test_the_ratio_of_two_torques_is_told():
+    hangs, recording = swinging(1)
+    for ratio in (0.15, 0.8, 6.0):
+        check = check_recording(replace(recording, tau=recording.tau * [1, ratio]), names(hangs))
+        (found,) = check.of("scale of a torque")
+        told = float(found.what.split("be ")[1].split(" times")[0])
+        assert told == pytest.approx(ratio, rel=0.03)
 
 
 def test_the_angle_of_a_wrong_zero_is_told_and_mends_it():

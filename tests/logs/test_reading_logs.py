@@ -242,6 +242,8 @@ ERRORS = [
     (table(q=DEGREES), {}, r"own.csv, line 1, column q1: goes to 28.6462: degrees, or a joint"),
     (table("time,q1 [gon],q2,tau1,tau2"), {}, r"q1 must be one of rad, mrad, deg, rev, .*'gon'"),
     (table("time,q1,q2,tau1 [mA],tau2"), {}, r'is a current; .*factors=\{"tau1": 0.7\}'),
+    (table("time,q1,q2,elbow_current,tau2"), {"columns": {"tau1": "elbow_current"}},
+     r'column elbow_current: is a current; .*factors=\{"tau1": 0.7\}'),
     (table(), {"encoding": "klingon"}, r"own.csv: encoding klingon does not fit: unknown encoding"),
     (table(), {"columns": {"tau1": "q1"}}, r"columns: tau1 must have .* by pandas\.merge"),
     (table(), {"columns": {"q1": 7}}, r"columns: the place of q1 must be an integer from 0 to 4"),

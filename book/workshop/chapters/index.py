@@ -271,6 +271,11 @@ def _quoted() -> None:
     stated("index-spring-adds-nothing", abs(planted.every(spring, "knob")).max() < 0.05)
     nulls = [planted.every(kind, "M11").max() for kind in ("shifted", "random phases")]
     stated("index-draws-come-near", max(nulls) > 0.75 * own)
+    friction = [
+        planted.loaded(JOINT_DAMPING.name, model, "more viscous friction")
+        for model in ("unedited", "written", "one factor")
+    ]
+    stated("index-friction-needs-lines", friction[1] < 0.5 * friction[0] <= 0.51 * friction[2])
     load = {m: planted.loaded(JOINT_DAMPING.name, m) for m in ("unedited", "written", "one factor")}
     stated("index-load-written", load["written"] < 0.3 * load["unedited"])
     stated("index-load-by-a-factor", load["one factor"] < 1.1 * load["written"])

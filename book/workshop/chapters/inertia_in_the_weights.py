@@ -187,6 +187,8 @@ def _quoted() -> None:
     for name, model in names.items():
         quote(f"inertia-load-{name}", planted.loaded(JOINT_DAMPING.name, model))
         quote(f"inertia-load-{name}-state", planted.loaded(STATE_FEEDBACK.name, model))
+        friction = planted.loaded(JOINT_DAMPING.name, model, "more viscous friction")
+        quote(f"inertia-friction-{name}", friction)
     row, whole = paths()[_carried()], paths().sum(0)
     for name, values in {"row": row, "row-network": whole}.items():
         quote(f"inertia-{name}", values[2])

@@ -54,9 +54,19 @@ def _read(kind: Mapping) -> float:
     return float(kind["read"]["mean"][0][0][2])
 
 
-def acceleration(kind: str, long: bool = False) -> float:
+def acceleration(kind: str, long: bool = False, reading: str = JOINT_DAMPING.name) -> float:
     """Share of acceleration names among what training added to hidden filters, per cent."""
-    return 100 * float(of_kinds(long)[kind]["names"]["hidden"]["added"]["acceleration"])
+    return _shapes(of_kinds(long, reading)[kind])
+
+
+def solved(kind: str) -> float:
+    """The same share, by the solver."""
+    wanted = {"reading": JOINT_DAMPING.name, "width": 21, "method": "solver"}
+    return _shapes(_row("solved", wanted)["kinds"][kind])
+
+
+def _shapes(kind: Mapping) -> float:
+    return 100 * float(kind["names"]["hidden"]["added"]["acceleration"])
 
 
 def every(kind: str, what: str) -> np.ndarray:
@@ -77,9 +87,9 @@ def _changes(reading: str, width: int, method: str) -> Mapping[str, Mapping]:
     return row["changes"]
 
 
-def loaded(reading: str, model: str) -> float:
-    """RMSS of networks, or what else, on trajectory 6 of the arm with 3 kg in its hand."""
-    return float(_changes(reading, 21, "descent")["3 kg"]["error"][model]["mean"])
+def loaded(reading: str, model: str, change: str = "3 kg") -> float:
+    """RMSS of networks, or what else, on trajectory 6 of a changed arm, as with 3 kg in its hand."""
+    return float(_changes(reading, 21, "descent")[change]["error"][model]["mean"])
 
 
 def shapes_and_sizes() -> Illustration:

@@ -20,7 +20,7 @@ from ddlib.learning import (
     surrogate,
     train_ensemble,
 )
-from ddlib.setups import INITIAL, JOINT_DAMPING, split, true_states
+from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, split, true_states
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote
 from workshop.chapters import index, planted, start
@@ -48,7 +48,8 @@ ROUNDS = {
     ),
     "position": (
         "learnt a spring's torques, of position alone",
-        "No arm and no acceleration is in them, and yet the shapes are the same.",
+        "Their random start is subtracted here. No arm and no acceleration is in them, and yet the "
+        "shapes are the same.",
     ),
 }
 """What the other network of each round learnt, and what is said to it after the guess."""
@@ -120,6 +121,7 @@ def rounds() -> list[GuessRound]:
     kinds = ["own"] * number + list(ROUNDS)
     every = trained(kinds, Weights.concatenate([begin, begin])).hidden_weights
     rows = every.reshape(2, number, -1, _WIDTH)
+    rows[:, -1] -= begin.hidden_weights.reshape(number, -1, _WIDTH)[-1]  # a spring's are small
     return [GuessRound(*pair, *names) for *pair, names in zip(*rows, ROUNDS.values())]
 
 
@@ -204,6 +206,8 @@ def _quoted() -> None:
     for name, kind in (("arm", "the arm"), ("position", "position alone")):
         quote(f"whose-added-{name}", planted.acceleration(kind))
         quote(f"whose-added-{name}-long", planted.acceleration(kind, long=True))
+        quote(f"whose-added-{name}-state", planted.acceleration(kind, True, STATE_FEEDBACK.name))
+        quote(f"whose-added-{name}-solver", planted.solved(kind))
 
 
 def _exercise(number: int, given, *others) -> Exercise:
