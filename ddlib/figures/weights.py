@@ -47,7 +47,9 @@ def network_diagram(weights: Weights) -> Illustration:
 
     def draw(figure: Figure):
         axis = figure.subplots()
-        inputs = [row(axis, 0, width, 5.2 * j, 5.2 * j + 4.2, COLOURS[j]) for j in range(joints)]
+        inputs = [
+            row(axis, 0, width, 5.2 * j, 5.2 * j + 4.2, ROLES[JOINTS[j]][0]) for j in range(joints)
+        ]
         middle = row(axis, 1.25, hidden, 1.2, 6.4, FAINT)
         top = row(axis, 2.5, outputs, 8.6, 9.6, COLOURS[2])
         below = [x for places in inputs for x in places]

@@ -6,8 +6,8 @@ import xml.etree.ElementTree as ET
 import matplotlib as mpl
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
 from book_pages import ROOT
+from hypothesis import given, settings, strategies as st
 from matplotlib.colors import rgb_to_hsv, to_rgb
 from pictures import SVG, black_or_white, check_sound, drawn, ids, size, words
 from PIL import Image
@@ -65,7 +65,7 @@ def test_roles_are_legible_and_the_same_in_figures_and_in_the_page_s_style_sheet
         figure.subplots().plot([0, 1], color=ROLES["even"][0])
 
     made = illustrate(even, "A line.")
-    assert "var(--dd-even, #2f6f0d)" in made.svg and "var(" not in fixed(made.svg)
+    assert f"var(--dd-even, {ROLES['even'][0]})" in made.svg and "var(" not in fixed(made.svg)
 
 
 @pytest.mark.parametrize("make", [draw, formulas])

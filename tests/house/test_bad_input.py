@@ -217,7 +217,7 @@ ASIDE = {"Arm.provenance", "Arm.from_links.provenance", "as_controller.name", "s
 # What others make; its methods are for readers
 MADE = {"Estimate"}
 SIGNED = set(
-    "angle b com gravity gravity_moments phase posture inertia twist_deg length offset value".split()
+    "angle b com gravity gravity_moments inertia length offset phase posture twist_deg value".split()
 )
 FREE = {"name", "alt", "label", "x_label", "y_label"}  # texts of which any will do
 

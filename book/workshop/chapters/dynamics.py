@@ -29,6 +29,7 @@ from ddlib.figures.style import (
     INK,
     JOINTS,
     NARROW,
+    ROLES,
     Illustration,
     illustrate,
 )
@@ -208,8 +209,12 @@ def arm_sketch(arm: Arm, q) -> Illustration:
         axis.plot([0, 1.25 * l1], [0, 0], color=FAINT, ls=":")
         reach = 1.55
         axis.plot([ex, ex * reach], [ey, ey * reach], color=FAINT, ls=":")
-        axis.plot([0, ex], [0, ey], color=COLOURS[0], lw=9, solid_capstyle="round", alpha=0.85)
-        axis.plot([ex, hx], [ey, hy], color=COLOURS[1], lw=7, solid_capstyle="round", alpha=0.85)
+        axis.plot(
+            [0, ex], [0, ey], color=ROLES["shoulder"][0], lw=9, solid_capstyle="round", alpha=0.85
+        )
+        axis.plot(
+            [ex, hx], [ey, hy], color=ROLES["elbow"][0], lw=7, solid_capstyle="round", alpha=0.85
+        )
         for x, y in ((0, 0), (ex, ey)):
             axis.add_patch(Circle((x, y), 0.022, facecolor="white", edgecolor=INK, zorder=3))
         for centre, start, angle, radius, name in (

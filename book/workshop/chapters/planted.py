@@ -88,7 +88,7 @@ def _changes(reading: str, width: int, method: str) -> Mapping[str, Mapping]:
 
 
 def loaded(reading: str, model: str, change: str = "3 kg") -> float:
-    """RMSS of networks, or what else, on trajectory 6 of a changed arm, as with 3 kg in its hand."""
+    """RMSS of networks, or what else, on trajectory 6 of a changed arm, like one with a load."""
     return float(_changes(reading, 21, "descent")[change]["error"][model]["mean"])
 
 
