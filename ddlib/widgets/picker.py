@@ -29,7 +29,7 @@ _RECORDED = "recorded"
 
 _TIMES = np.linspace(0.0, MOTION_SECONDS, 76)  # where the curves are sampled, s
 _AXIS = np.linspace(0.0, MAX_EXTENT_DEG, 31)  # extents at which the map of errors is computed, °
-_STEP = 0.1  # between two shades of the map, RMSS
+_SHADES = 10  # of the map; both ends are open
 _SNAP = 0.035  # a drag that comes so near to a trajectory, as a part of the pad, ends on it
 
 _NOTE = (
@@ -183,14 +183,12 @@ class TrajectoryPicker(CurveWidget):
             live=Live(ranges={name: (x.min(), x.max()) for name, x in square.items()}),
             **{"code": _MOTION, **options},
         )
-        errors = {name: self.numbers[f"RMSS, {name}"] for name in models}
-        # in hundredths, the shoulder's extents fastest
-        errors = {name: "".join(map(_digits, 100 * x.T.ravel())) for name, x in errors.items()}
+        errors = {name: _shades(self.numbers[f"RMSS, {name}"]) for name in models}
         angles, lengths = [f"{joint} angle" for joint in JOINTS], list(setup.arm.lengths)
         layouts, weights = networks(models.values())
         described = [{"name": name, **layout} for name, layout in zip(models, layouts)]
         self._keep(
-            map={"side": _AXIS.size, "step": _STEP, "errors": errors},
+            map={"side": _AXIS.size, "errors": errors},
             arm={"lengths": lengths, "angles": angles, "times": _TIMES.tolist()},
             loop={**curves.plain(), "models": described},
             weights=weights,
@@ -229,6 +227,13 @@ class TrajectoryPicker(CurveWidget):
             self.record()
         except Exception as error:  # shown in the figure: a comm's handler has no other reader
             self._say(f"Not recorded. {type(error).__name__}: {error}")
+
+
+def _shades(errors) -> dict:
+    """A map: ends of its scale; hundredths of a shade, the shoulder's extents fastest."""
+    low, high = np.quantile(errors, (0.02, 0.98))
+    shades = 100 * (_SHADES - 1) * (errors.T.ravel() - low) / (high - low)
+    return {"low": low, "high": high, "digits": "".join(map(_digits, shades))}
 
 
 def _digits(value: float) -> str:

@@ -94,16 +94,20 @@ def test_the_square_is_of_the_trajectories_that_were_recorded():
 
 
 def test_the_map_is_of_the_exact_errors(full, picker):
+    maps = {name: each.values() for name, each in full.map["errors"].items()}
     assert full.map["side"] == _AXIS.size and _AXIS[[0, -1]].tolist() == [0, 45]
     low, high = ({c["name"]: c[end] for c in full.spec["curves"]} for end in ("low", "high"))
     for i, j in ((0, 0), (12, 4), (30, 30), (3, 29)):
         exact = full.curves_at(shoulder_deg=_AXIS[i], elbow_deg=_AXIS[j])
-        for name, digits in full.map["errors"].items():
+        for name, (low_end, high_end, digits) in maps.items():
             assert len(digits) == 2 * _AXIS.size**2
             at = 2 * (j * _AXIS.size + i)
             error = exact[f"RMSS, {name}"][0]
-            assert int(digits[at : at + 2], 36) / 100 == pytest.approx(error, abs=0.0051)
+            shade = 9 * (error - low_end) / (high_end - low_end)
+            assert int(digits[at : at + 2], 36) / 100 == pytest.approx(np.clip(shade, 0, 12.95), abs=0.0051)
             assert full.numbers[f"RMSS, {name}"][i, j] == pytest.approx(error, rel=1e-9)
+            shades = {int("".join(two), 36) // 100 for two in zip(digits[::2], digits[1::2])}
+            assert shades >= set(range(10))  # none is one plain square
         peak = picker.numbers["peak elbow"][i, j]
         assert peak == pytest.approx(exact["peak elbow"][0], rel=1e-9)
         for name, curve in exact.items():  # axes and decimals follow the whole square

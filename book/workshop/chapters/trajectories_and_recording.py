@@ -37,7 +37,7 @@ from ddlib.trajectories import (
 )
 from ddlib.widgets import TrajectoryPicker as TrajectoryPicker
 from workshop.chapters.exercises import Between, Exercise, fitting, judging
-from workshop.report import committed
+from workshop.report import committed, results
 from workshop.report.evidence.verdicts import Measured, turns_at
 from workshop.report.exact_states import RADIUS
 from workshop.report.two_harmonics import record_two_harmonics
@@ -160,6 +160,9 @@ def _quoted() -> None:
     windows = sliding_windows(training.q, 21, training.motion).reshape(-1, 42)
     quote("recording-dimensions", used_dimensions(windows, step))
     quote("recording-cells", 100 * coverage().value)
+    errors = results.read("table-4-1")["setups"][JOINT_DAMPING.name]["21"]["errors"]
+    quote("recording-known", np.median(errors["training"]))
+    quote("recording-test", np.median(errors["test by training deviation"]))
 
 
 def _exercise(number: int, motion=None) -> Exercise:

@@ -51,11 +51,11 @@ computes((view) => {
 });
 
 const FINE = 3; // parts of the map's grid in which it is drawn
-const LEVELS = 10; // the last one is open to above
+const LEVELS = 10; // both ends are open
 
 // The map: for every network its errors on a grid, of which one is drawn, in steps.
 function mapOf(view) {
-  const { side, step, errors } = view.model.get("map");
+  const { side, errors } = view.model.get("map");
   const names = Object.keys(errors);
   const { under, legend, frame } = view.pad;
   const layers = Array.from({ length: LEVELS }, (_, k) => make("path", { class: "level", "fill-opacity": short(0.07 * k) }));
@@ -71,15 +71,15 @@ function mapOf(view) {
       return Array.from({ length: fine }, (_, column) => {
         const [i, u] = between(column + 0.5);
         const at = j * side + i;
-        const low = values[at] * (1 - u) + values[at + 1] * u;
-        const high = values[at + side] * (1 - u) + values[at + side + 1] * u;
-        return Math.min(LEVELS - 1, Math.floor((low * (1 - v) + high * v) / step));
+        const below = values[at] * (1 - u) + values[at + 1] * u;
+        const above = values[at + side] * (1 - u) + values[at + side + 1] * u;
+        return Math.min(LEVELS - 1, Math.floor(below * (1 - v) + above * v));
       });
     });
   }
   function draw(name) {
     const paths = layers.map(() => "");
-    (errors[name] ? levelsOf(errors[name]) : []).forEach((row, k) => {
+    (errors[name] ? levelsOf(errors[name].digits) : []).forEach((row, k) => {
       const y = short(frame.top + frame.size - (k + 1) * cell);
       for (let from = 0, to; from < fine; from = to) {
         for (to = from + 1; to < fine && row[to] === row[from]; ) to++;
@@ -103,11 +103,13 @@ function mapOf(view) {
     for (const [other, button] of buttons) button.setAttribute("aria-pressed", String(other === name));
     draw(name);
     scale.hidden = !name;
+    if (!name) return;
+    const { low, high } = errors[name];
+    scale.replaceChildren(`RMSS ${low.toFixed(2)} and less`, ramp, `${high.toFixed(2)} and more`);
   }
-  const scale = make("div", { class: "scale" }, "RMSS 0");
+  const scale = make("div", { class: "scale" });
   const ramp = make("svg", { width: 12 * LEVELS, height: 12, "aria-hidden": "true" });
   layers.forEach((_, k) => ramp.append(make("rect", { class: "level", x: 12 * k, width: 12, height: 12, "fill-opacity": short(0.07 * k) })));
-  scale.append(ramp, `${(step * (LEVELS - 1)).toFixed(1)} and more`);
   const title = "Show the errors of";
   const words = { class: "presets under", role: "group", "aria-label": title };
   const choice = make("div", words, make("span", { "aria-hidden": "true" }, title), ...buttons.map(([, b]) => b));
