@@ -73,7 +73,7 @@
     return begin;
   });
 
-  const numbers = forms.map((form, k) => make("button", { type: "button", textContent: k + 1 }));
+  const numbers = forms.map((form, k) => make("button", { type: "button", textContent: `Question ${k + 1}` }));
   const show = (at) => {
     forms.forEach((form, k) => {
       form.hidden = k !== at;

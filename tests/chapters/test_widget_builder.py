@@ -136,8 +136,11 @@ def test_one_stroke_paints_across_stems(page_with, widget):
     np.testing.assert_allclose(painted[:11], np.linspace(0.8, -0.8, 11), atol=0.03)
     np.testing.assert_allclose(painted, painted[::-1], atol=0.011)
     slack = page.evaluate(SCORE)
+    total = f"your weights sum to {painted.sum():.2f}"[:-1].replace("-", "−")
+    assert page.locator(".times").inner_text().startswith(total)
     press(page, "Sum zero", "switch")
     level = heights(page)
+    assert "leaks" not in page.locator(".times").inner_text()
     assert abs(level.sum()) < 0.11 and page.evaluate(SCORE) < 0.5 * slack
     assert page.evaluate(SCORE) == pytest.approx(builder.score(level - level.mean()), abs=0.01)
     compare.click()

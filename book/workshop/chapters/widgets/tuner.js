@@ -241,6 +241,7 @@ function asking(view, questions, show) {
     );
   }
   pose();
+  view.resets.push(pose);
   const legend = make("legend", {}, "Predict first. What happens if ", question);
   const buttons = make("div", { class: "buttons" }, tryIt, next);
   return make("fieldset", { class: "ask" }, legend, choices, outcome, buttons);
