@@ -38,7 +38,8 @@ from ddlib.widgets.hinton import (
 from ddlib.widgets.parts.parameters import Choice, Presets
 from ddlib.widgets.scripts import bundle, styles
 
-_FREQUENCIES = np.geomspace(0.005, 0.2, 31)  # where the gain is shown, over the sampling rate
+# Where the gain is shown, over the sampling rate: the widest window has a zero every 0.024.
+_FREQUENCIES = np.linspace(0.005**0.5, 0.2**0.5, 81) ** 2
 _FLOOR = 1e-3  # lowest gain shown, as a part of the largest: a zero of the response has none
 
 

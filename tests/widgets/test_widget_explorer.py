@@ -73,6 +73,7 @@ def test_truths_of_every_filter(explorer, models):
 
 def test_gains_are_scipys(explorer, models):
     (hertz,) = (np.array(p["x"]) for p in explorer.spec["panels"] if p["y_label"] == "Gain")
+    assert np.diff(hertz).max() < 0.2 / LOG_STEP / 41  # a zero is no jag
     for values in settings(explorer, 40, seed=3):
         f = weights_of(models, **values)
         shown = explorer.at_grid(**values)

@@ -196,8 +196,14 @@ def test_nothing_moves_before_a_guess(page_with, widget):
     assert f"Epoch {paused['epoch']}." in page.locator(".status").inner_text()
     page.get_by_role("button", name="Step").click()
     assert page.evaluate(STATE)["epoch"] == paused["epoch"] + 1
+    page.get_by_role("button", name="Train", exact=True).click()
+    page.wait_for_function("document.querySelector('.ddlib-trainer').school.events.some(Number)")
+    page.get_by_role("button", name="Pause").click()
+    first = min(filter(None, page.evaluate(STATE)["events"]))
+    said = page.locator(".verdict").inner_text()
+    assert f"came first, at epoch {first}" in said and said.startswith("Your guess: Direct")
     page.get_by_label("Torques").select_option("shifted")
-    assert page.evaluate(STATE)["epoch"] == 0
+    assert page.evaluate(STATE)["epoch"] == 0 and not page.locator(".verdict").inner_text()
     assert page.get_by_role("button", name=LOCKED, exact=True).is_disabled()
 
 

@@ -328,7 +328,6 @@ function build({ model, el }) {
     school.look();
     show();
     draw();
-    told();
     changed();
   });
   const anew = buttonOf("New weights", () => seeded((state.seed % spec.seeds) + 1));
@@ -418,12 +417,12 @@ function build({ model, el }) {
   const plain = (x) => (Number.isFinite(x) ? x.toFixed(x < 0.0995 ? 3 : 2) : "none");
   function draw() {
     const { outputs, error } = school.judge();
-    const told = outputs.map((output) => torqueOfOutput(school.model, output));
+    const torques = outputs.map((output) => torqueOfOutput(school.model, output));
     const curves = { training: school.training, test: school.test };
     NAMES.forEach((joint, j) => {
       const most = truth[j].reduce((a, x) => Math.max(a, 1.15 * Math.abs(x)), 1);
       Object.assign(curves, { [`${joint} low`]: [-most], [`${joint} high`]: [most] });
-      curves[`${joint} network`] = told.map((tau) => tau[j]);
+      curves[`${joint} network`] = torques.map((tau) => tau[j]);
       curves[`${joint} true`] = truth[j];
     });
     drawn.forEach((one) => one.redraw(curves));
@@ -435,6 +434,7 @@ function build({ model, el }) {
     write(error6, plain(error));
     events.forEach(({ output }, k) => write(output, school.events[k] === null ? (over() ? "never" : "not yet") : `epoch ${school.events[k]}`));
     if (!running) drawn.forEach((one) => one.describe(curves));
+    told();
   }
   const inertia = () => `${school.inertia().toFixed(1)} kg m² (the arm: ${school.model.arm.toFixed(1)})`.replace("-", "−");
   function run(now) {
@@ -464,7 +464,6 @@ function build({ model, el }) {
     last = performance.now();
     cancelAnimationFrame(due);
     due = requestAnimationFrame(run);
-    write(said, "");
     show();
   }
   function pause() {
@@ -479,7 +478,6 @@ function build({ model, el }) {
   }
   function ended() {
     pause();
-    told();
     const path = own() ? "your own" : spec.home;
     history.unshift({ ...state, path, events: [...school.events], error: school.test.at(-1), inertia: school.inertia().toFixed(1) });
     history.length = Math.min(5, history.length);
@@ -497,15 +495,16 @@ function build({ model, el }) {
       go();
     }, REST);
   }
-  // What came first and what came out, once the run is over.
+  // What came first, as soon as it came; what came out, once the run is over.
   function told() {
-    if (!over()) return write(said, "");
     const at = school.events.map((e) => e ?? Infinity);
     const first = Math.min(...at);
+    if (!over() && (first === Infinity || !school.epoch)) return write(said, "");
     const came = labels.filter((_, k) => at[k] === first).join(" and ");
     const verdict = first === Infinity ? `None of the three came within ${spec.epochs} epochs.` : `What came first, at epoch ${first}: ${came}.`;
     const mine = state.guess === "" ? "" : `Your guess: ${labels[state.guess]}. `;
-    write(said, `${mine}${verdict} ${named("direct")} ${named("hidden")} Inertia in the network: ${inertia()}.`);
+    const end = over() ? ` ${named("direct")} ${named("hidden")} Inertia in the network: ${inertia()}.` : "";
+    write(said, `${mine}${verdict}${end}`);
   }
   // How many filters of a layer have a name, and that the others have none.
   function named(layer) {
@@ -522,7 +521,6 @@ function build({ model, el }) {
     cancelAnimationFrame(due);
     enrol();
     truth = measured();
-    write(said, "");
     show();
     draw();
   }
@@ -628,7 +626,6 @@ function build({ model, el }) {
     if (school.epoch < goal) waiting = setTimeout(reach, 0);
     else {
       goal = 0;
-      told();
       show();
       tell();
     }
