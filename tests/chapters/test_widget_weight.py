@@ -58,8 +58,14 @@ def test_steps_go_downhill(page_with, widget):
     page = page_with(widget, query="?one-weight=momentum:0.5")
     wanted = steps(-2.0, 10.0, 0.5, 11)
     now = "document.querySelector('.ddlib-weight').view.get('weight')"
+    landing = page.locator("circle.next").bounding_box()
     page.get_by_role("button", name="Step", exact=True).click()
     assert page.evaluate(now) == pytest.approx(wanted[1])
+    page.evaluate(NEXT_FRAME)
+    here = page.locator(".walked.now").bounding_box()  # where the ring was
+    for side, size in (("x", "width"), ("y", "height")):
+        middles = [box[side] + box[size] / 2 for box in (landing, here)]
+        assert middles[0] == pytest.approx(middles[1], abs=0.6)
     page.get_by_role("button", name="Ten steps").click()
     words = page.locator(".walk p")
     words.get_by_text("11 steps from −2.00").wait_for()

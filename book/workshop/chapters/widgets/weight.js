@@ -85,16 +85,19 @@ extras.push((view) => {
   const [chart] = view.charts;
   const points = make("path", { class: "walked" });
   const now = make("path", { class: "walked now" });
-  chart.el.querySelector(":scope > svg").append(points, now);
+  const next = make("path", { class: "next" });
+  const landing = make("circle", { class: "next", r: 6 });
+  chart.el.querySelector(":scope > svg").append(points, now, next, landing);
+  const landed = () => Math.min(high, Math.max(low, view.get("weight") + changeOf(view)));
 
   function step() {
     const { walk } = view;
     const at = view.get("weight");
-    const next = Math.min(high, Math.max(low, at + changeOf(view)));
+    const to = landed();
     // at an end of the range it stands
-    const last = next === low || next === high ? 0 : next - at;
-    Object.assign(walk, { last, at: next, past: [...walk.past, at] });
-    view.set({ weight: next });
+    const last = to === low || to === high ? 0 : to - at;
+    Object.assign(walk, { last, at: to, past: [...walk.past, at] });
+    view.set({ weight: to });
     view.schedule(); // at the end of the range nothing else does
   }
   let timer = 0;
@@ -144,6 +147,9 @@ extras.push((view) => {
     unit.show(at);
     put(points, { d: dots(past.slice(-60)) });
     put(now, { d: dots([at]) });
+    const [x, y] = chart.at(landed(), unitAt(landed()).error).map(short);
+    put(next, { d: `M${chart.at(at, unitAt(at).error).map(short).join(" ")}L${x} ${y}` });
+    put(landing, { cx: x, cy: y });
     write(status, words());
   };
   view.after.push(follow);

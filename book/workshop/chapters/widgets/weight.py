@@ -51,7 +51,8 @@ class OneWeight(CurveWidget):
             ],
             title="One weight",
             alt="Left, the error of a unit over its weight: flat, then a valley, then flat; "
-            "a straight line touches it at the weight as it stands. Right, the unit's answer, "
+            "a straight line touches it at the weight as it stands; a ring is where the next step "
+            "lands. Right, the unit's answer, "
             "an S from 0 to 1, with the answer that is wanted.",
             scalars=[
                 Scalar("answers", f"Answer (wanted: {WANTED})", digits=3),
