@@ -62,4 +62,6 @@ def test_the_page_computes_and_says_the_same(page_with, switches):
         page.evaluate(SET, {**switches.values, **setting})
         assert_curves(page, switches.curves_at(**setting), 1e-5)
         assert figure.get_attribute("class").split() == look.split()
+        box, words = (page.locator(f".box.model {x}").bounding_box() for x in ("rect", ".small"))
+        assert box["x"] < words["x"] and words["width"] < box["width"]
         assert "the model gives nothing" not in figure.get_attribute("aria-label")

@@ -114,8 +114,8 @@ extras.push((view) => {
     const amount = (x) => `${x.toFixed(1)} N m`;
     svg.classList.toggle("no-model", !on("model"));
     svg.classList.toggle("no-feedback", !on("feedback"));
-    const parts = [`masses ${Math.round(on("masses"))} %`, ...(on("known") ? ["friction"] : [])];
-    write(knows, on("model") ? parts.join(", ") : "off");
+    const masses = `${Math.round(on("masses"))} %`;
+    write(knows, !on("model") ? "off" : on("known") ? `${masses}, friction` : `masses ${masses}`);
     write(rubs, on("friction") ? "with friction" : "rigid");
     write(ahead, on("model") ? amount(torques.ahead) : "");
     write(back, on("feedback") ? amount(torques.back) : "");
