@@ -39,7 +39,7 @@ from ddlib.widgets.parts.parameters import Choice, Presets
 from ddlib.widgets.scripts import bundle, styles
 
 # Where the gain is shown, over the sampling rate: the widest window has a zero every 0.024.
-_FREQUENCIES = np.linspace(0.005**0.5, 0.2**0.5, 81) ** 2
+_FREQUENCIES = np.linspace(0.005**0.5, 0.2**0.5, 121) ** 2
 _FLOOR = 1e-3  # lowest gain shown, as a part of the largest: a zero of the response has none
 
 

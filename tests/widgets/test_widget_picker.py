@@ -104,7 +104,9 @@ def test_the_map_is_of_the_exact_errors(full, picker):
             at = 2 * (j * _AXIS.size + i)
             error = exact[f"RMSS, {name}"][0]
             shade = 9 * (error - low_end) / (high_end - low_end)
-            assert int(digits[at : at + 2], 36) / 100 == pytest.approx(np.clip(shade, 0, 12.95), abs=0.0051)
+            assert int(digits[at : at + 2], 36) / 100 == pytest.approx(
+                np.clip(shade, 0, 12.95), abs=0.0051
+            )
             assert full.numbers[f"RMSS, {name}"][i, j] == pytest.approx(error, rel=1e-9)
             shades = {int("".join(two), 36) // 100 for two in zip(digits[::2], digits[1::2])}
             assert shades >= set(range(10))  # none is one plain square
