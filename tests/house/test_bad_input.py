@@ -216,9 +216,8 @@ ASIDE = {"Arm.provenance", "Arm.from_links.provenance", "as_controller.name", "s
          "train_ensemble.label", "TorqueModel.step"}  # fmt: skip
 # What others make; its methods are for readers
 MADE = {"Estimate"}
-SIGNED = set(
-    "angle b com gravity gravity_moments inertia length offset phase posture twist_deg value".split()
-)
+SIGNED = {"angle", "b", "com", "gravity", "gravity_moments", "inertia", "length", "offset", "phase",
+          "posture", "twist_deg", "value"}  # fmt: skip
 FREE = {"name", "alt", "label", "x_label", "y_label"}  # texts of which any will do
 
 
