@@ -13,7 +13,16 @@ from typing import Protocol
 
 import numpy as np
 
-from ddlib._check import function_of, instance, non_negative, number, shaped, told
+from ddlib._check import (
+    function_of,
+    instance,
+    non_negative,
+    number,
+    one_of,
+    positive,
+    shaped,
+    told,
+)
 from ddlib.dynamics import Arm
 from ddlib.trajectories import Trajectory
 
@@ -61,41 +70,68 @@ class PID:
     """Independent PID control of each joint.
 
     ``tau = kp e + ki integral(e) + kd de/dt`` with ``e = q_ref - q``. The derivative
-    part uses the reference velocity and the measured velocity.
+    part uses the reference velocity and the measured velocity. Its filter is discretised by
+    backward Euler, ``d[k] = (T_f d[k-1] + T de/dt[k]) / (T_f + T)`` at the control period T.
+
+    At its `limit` the integral would go on growing. ``"conditional"`` lets it rest while the error
+    would push the torque further beyond. A time in s is that of back-calculation: within it, the
+    integral loses what the motor could not give (Astrom & Murray 2021, section 11.4). None lets it
+    wind up. Beside a `Feedforward` the limit holds for the correction alone.
     """
 
     kp: tuple[float, float]  #: N m/rad per joint, (2,) or (runs, 2).
     ki: tuple[float, float] = (0.0, 0.0)  #: N m/(rad s).
     kd: tuple[float, float] = (0.0, 0.0)  #: N m s/rad.
-    integral_limit: float = 1e6  #: Largest magnitude of the integral's torque, N m.
+    limit: tuple[float, float] | None = None  #: Largest torque that it may ask for, N m.
+    anti_windup: float | str | None = "conditional"  #: What the integral does at the limit.
+    derivative_filter: float = 0.0  #: Time constant T_f of the derivative's filter, s.
 
     def __post_init__(self):
         for name in ("kp", "ki", "kd"):
             non_negative(name, getattr(self, name), 2)
-        number("integral_limit", self.integral_limit, 0.0)
+        if self.limit is not None:
+            positive("limit", self.limit)
+        if isinstance(self.anti_windup, str):
+            one_of("anti_windup", self.anti_windup, ("conditional",))
+        elif self.anti_windup is not None:
+            number("anti_windup", self.anti_windup, 0.0, 1e4, open_low=True)
+        number("derivative_filter", self.derivative_filter, 0.0, 1e4)
 
     def __repr__(self):
         terms = {name: getattr(self, name) for name in ("kp", "ki", "kd")}
         text = ", ".join(f"{k}={v}" for k, v in terms.items() if k == "kp" or np.any(v))
-        limit = f", integral_limit={self.integral_limit:g}" if np.any(self.ki) else ""
-        return f"PID({text}{limit})"
+        if self.limit is not None:
+            text += f", limit={self.limit}, anti_windup={self.anti_windup!r}"
+        if self.derivative_filter:
+            text += f", derivative_filter={self.derivative_filter:g}"
+        return f"PID({text})"
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
         """The law that follows `reference`, called every `step` s."""
         kp, ki, kd = (np.asarray(g, dtype=float) for g in (self.kp, self.ki, self.kd))
+        limit, cure, damping = self.limit, self.anti_windup, np.zeros(())
         integral, integrates, damps = np.zeros(()), ki.any(), kd.any()
+        kept = self.derivative_filter / (self.derivative_filter + step)
 
         def law(k, q, qd):
-            nonlocal integral
+            nonlocal integral, damping
             error = reference.q[..., k, :] - q
-            tau = kp * error
+            tau, before = kp * error, integral
             if integrates:
                 integral = integral + ki * error * step
-                integral = np.clip(integral, -self.integral_limit, self.integral_limit)
                 tau = tau + integral
             if damps:
-                tau = tau + kd * (reference.qd[..., k, :] - qd)
-            return tau
+                rate = reference.qd[..., k, :] - qd
+                damping = kept * damping + (1 - kept) * rate if kept else rate
+                tau = tau + kd * damping
+            if limit is None:
+                return tau
+            given = np.clip(tau, -np.asarray(limit), limit)
+            if cure == "conditional":
+                integral = np.where((given != tau) & (tau * error > 0), before, integral)
+            elif cure is not None:
+                integral = integral + (given - tau) * min(1.0, step / cure)
+            return given
 
         return law
 

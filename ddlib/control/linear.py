@@ -7,7 +7,16 @@ from typing import NamedTuple
 import control
 import numpy as np
 
-from ddlib._check import filled, finite_array, instance, integer, non_negative, number, told
+from ddlib._check import (
+    filled,
+    finite_array,
+    instance,
+    integer,
+    non_negative,
+    number,
+    one_of,
+    told,
+)
 
 _CLOSE = 1e-4  # relative, of a gain to 1 and of a phase to -180 degrees
 
@@ -56,8 +65,9 @@ def loop_gain(inertia, viscous, kp, ki=0.0, kd=0.0) -> control.TransferFunction:
 
 
 def closed_loop(
-    joints: control.StateSpace, kp, ki=0.0, kd=0.0, period=None, delay=0
-) -> control.StateSpace:
+    joints: control.StateSpace, kp, ki=0.0, kd=0.0, period=None, delay=0,
+    *, derivative_filter=0.0, velocity="tachometer",
+) -> control.StateSpace:  # fmt: skip
     """The PID loop around joints: reference angles and disturbance torques in, angles out.
 
     The reference's velocity is taken to be zero.
@@ -73,10 +83,14 @@ def closed_loop(
         samples. Default: continuous control.
     delay : int
         Whole periods between a reading and its torque; sampled loops only.
+    derivative_filter : float
+        Time constant of the derivative's filter in s, as `ddlib.control.PID` has it.
+    velocity : str
+        "tachometer", or "difference" of two readings of the angle; sampled loops only.
     """
     instance("joints", joints, control.StateSpace)
-    n = joints.ninputs
-    A, command, torque, law, reference = _parts(joints, kp, ki, kd, period, delay)
+    n, damper = joints.ninputs, (derivative_filter, velocity)
+    A, command, torque, law, reference = _parts(joints, kp, ki, kd, period, delay, *damper)
     B = np.hstack([command @ reference[0] + reference[1], torque])
     C = np.hstack([np.eye(n), np.zeros((n, len(A) - n))])
     time = 0 if period is None else period
@@ -84,42 +98,62 @@ def closed_loop(
 
 
 def opened_loop(
-    joints: control.StateSpace, kp, ki=0.0, kd=0.0, period=None, delay=0, *, joint=0
-) -> control.StateSpace:
+    joints: control.StateSpace, kp, ki=0.0, kd=0.0, period=None, delay=0,
+    *, joint=0, derivative_filter=0.0, velocity="tachometer",
+) -> control.StateSpace:  # fmt: skip
     """The PID loop of `closed_loop` cut open where one joint's torque is commanded.
 
     In goes that torque, out comes the controller's answer with its sign reversed.
     """
     instance("joints", joints, control.StateSpace)
     number("joint", joint, 0, joints.ninputs - 1)
-    A, command, _, law, _ = _parts(joints, kp, ki, kd, period, delay)
+    damper = derivative_filter, velocity
+    A, command, _, law, _ = _parts(joints, kp, ki, kd, period, delay, *damper)
     others = [k for k in range(joints.ninputs) if k != joint]
     A = A + command[:, others] @ law[others]
     time = 0 if period is None else period
     return control.ss(A, command[:, [joint]], -law[[joint]], 0, time)
 
 
-def _parts(joints, kp, ki, kd, period, delay):
+def _parts(joints, kp, ki, kd, period, delay, derivative_filter, velocity):
     """The loop in pieces.
 
-    State ``x``: angles, velocities, integrals (only if there are any), waiting torques.
+    State ``x``: angles, velocities, integrals (only if there are any), what the derivative
+    remembers (if it is filtered or a difference), waiting torques.
     With the commanded torque ``v = law x + reference[0] r``,
     ``x' = A x + command v + reference[1] r + torque d``.
     """
     n = joints.ninputs
     kp, ki, kd = (np.diag(_per_joint(k, v, n)) for k, v in (("kp", kp), ("ki", ki), ("kd", kd)))
     integer("delay", delay, 0)
+    smoothing = number("derivative_filter", derivative_filter, 0.0, 1e4)
+    differs = one_of("velocity", velocity, ("tachometer", "difference")) == "difference"
     if period is None and delay:
         raise ValueError(f"delay must be 0 in continuous control, got {delay} periods")
+    if period is None and differs:
+        raise ValueError("velocity must be 'tachometer' in continuous control, got 'difference'")
     zero, identity = np.zeros((n, n)), np.eye(n)
     A, B, step, at_once, hold = joints.A, joints.B, ki, zero, zero
+    # of the derivative: what it remembers of itself, what goes in, what comes out at once
+    remembers, enters, leaves, passes = 0.0, 0.0, 1.0, 1.0
+    if smoothing and period is None:
+        remembers, enters, passes = -1 / smoothing, 1 / smoothing, 0.0
     if period is not None:
         number("period", period, 0.0, open_low=True)
         sampled = control.sample_system(joints, period, "zoh")
         # the law adds the newest error to the integral before using it
         A, B, step, at_once, hold = sampled.A, sampled.B, ki * period, ki * period, identity
-    law, size, above = np.hstack([-(kp + at_once), -kd]), 2 * n, n if ki.any() else 0
-    integral, waiting = slice(size, size + above), size + above
+        kept = smoothing / (smoothing + period)  # backward Euler, as in the law
+        remembers, enters, leaves, passes = kept, 1 - kept, kept, 1 - kept
+        if differs:
+            # it remembers ``kept d[k] - (1 - kept) q[k] / T``, to which the next angle is added
+            enters, leaves, passes = -((1 - kept) ** 2) / period, 1.0, (1 - kept) / period
+    size, measured = 2 * n, slice(0, n) if differs else slice(n, 2 * n)
+    law = np.hstack([-(kp + at_once), zero])
+    law[:, measured] -= passes * kd
+    above, more = n if ki.any() else 0, n if (smoothing or differs) and kd.any() else 0
+    integral, memory = slice(size, size + above), slice(size + above, size + above + more)
+    waiting = size + above + more
     total = waiting + n * delay
     F, command, torque, of_law, reference = (
         np.zeros(shape) for shape in ((total, total), *[(total, n)] * 2, (n, total), (total, n))
@@ -128,6 +162,9 @@ def _parts(joints, kp, ki, kd, period, delay):
     if above:
         F[integral, :n], F[integral, integral] = -step, hold
         of_law[:, integral], reference[integral] = identity, step
+    if more:
+        F[memory, measured], F[memory, memory] = enters * identity, remembers * identity
+        of_law[:, memory] = -leaves * kd
     if delay:  # v enters the queue at its end and acts when it has reached the front
         F[:size, waiting : waiting + n] = B
         F[waiting : total - n, waiting + n :] = np.eye(total - n - waiting)

@@ -70,16 +70,86 @@ def test_pid_closed_loop_agrees_with_python_control():
     assert np.abs(ours[:, 2:]).max() > 10.0
 
 
-def test_integral_torque_is_limited_and_unwinds_at_once():
-    limit = 3.0
-    reference = Trajectory(*np.zeros((3, 200, 2)))
-    law = PID((0.0, 0.0), ki=(10.0, 1.0), integral_limit=limit).start(reference, 0.1)
-    off, still = np.array([1.0, -1.0]), np.zeros(2)
-    out = np.array([law(k, off if k < 100 else -off, still) for k in range(200)])
-    np.testing.assert_allclose(out[:5, 0], [-1, -2, -3, -3, -3])
-    assert np.abs(out).max() == limit
-    np.testing.assert_allclose(out[99], [-limit, limit])
-    np.testing.assert_allclose(out[100], [-limit + 1, limit - 0.1])  # no wound-up surplus
+def under(law, errors, rates=0.0, step=0.1):
+    """Torques of a law whose two joints have these errors and rates of the error, in turn."""
+    errors = np.asarray(errors, float)
+    law = law.start(Trajectory(*np.zeros((3, errors.size, 2))), step)
+    rates = np.broadcast_to(rates, errors.shape)
+    return np.array(
+        [law(k, *-np.array([[e, e], [r, r]])) for k, (e, r) in enumerate(zip(errors, rates))]
+    )
+
+
+LIMIT = (3.0, 30.0)  # the first joint's motor is weak
+
+
+def test_without_a_cure_the_integral_winds_up_behind_the_limit():
+    """Ten periods of an error of 1 store 10 N m, all of which 20 periods of -1 have to take."""
+    law = PID((0.0, 0.0), (10.0, 10.0), limit=LIMIT, anti_windup=None)
+    out = under(law, [1.0] * 10 + [-1.0] * 10)
+    np.testing.assert_allclose(out[:, 0], np.minimum(out[:, 1], 3.0))
+    np.testing.assert_allclose(out[:, 1], [*range(1, 11), *range(9, -1, -1)], atol=1e-12)
+
+
+def test_conditional_integration_rests_at_the_limit():
+    law = PID((0.0, 0.0), (10.0, 10.0), limit=LIMIT)
+    out = under(law, [1.0] * 10 + [-1.0] * 8)
+    np.testing.assert_allclose(out[:10, 0], [1, 2, *[3] * 8])
+    np.testing.assert_allclose(out[10:, 0], [2, 1, 0, -1, -2, -3, -3, -3], atol=1e-12)
+    # a spring alone asks for more than all: nothing is stored, and after it nothing pushes
+    stiff = PID((100.0, 100.0), (10.0, 10.0), limit=LIMIT)
+    assert under(stiff, [1.0] * 10 + [0.0])[-1] == pytest.approx([0.0, 0.0])
+
+
+@pytest.mark.parametrize("tracking", [0.25, 1.0])
+def test_back_calculation_is_its_difference_equation(tracking):
+    """The surplus over the limit settles where the error's inflow is what is taken back."""
+    law = PID((0.0, 0.0), (10.0, 10.0), limit=LIMIT, anti_windup=tracking)
+    out = under(law, np.r_[np.ones(200), -np.ones(60)])
+    stored, known = 0.0, []
+    for error in [1.0] * 200 + [-1.0] * 60:
+        asked = stored + 10 * error * 0.1
+        known.append(np.clip(asked, -3, 3))
+        stored = asked + (known[-1] - asked) * 0.1 / tracking
+    np.testing.assert_allclose(out[:, 0], known, atol=1e-12)
+    back = np.argmax(out[200:, 0] < 3.0)  # the surplus is 10 times the tracking time, in N m
+    assert back <= np.ceil(10 * tracking)
+
+
+def test_a_limit_that_is_never_reached_changes_nothing():
+    errors = np.random.default_rng(3).normal(size=300)
+    for cure in (None, "conditional", 0.2):
+        limited = PID(KP, KI, KD, limit=(1e4, 1e4), anti_windup=cure)
+        np.testing.assert_array_equal(under(limited, errors), under(PID(KP, KI, KD), errors))
+
+
+@pytest.mark.parametrize("smoothing", [0.0, 0.05, 0.4])
+def test_filtered_derivative_is_python_controls_backward_euler(smoothing):
+    """``kd s / (1 + T_f s)`` with ``s = (1 - 1/z) / T``, of an error that is differenced."""
+    error = np.cumsum(np.random.default_rng(5).normal(size=200))
+    rate = np.diff(error, prepend=0.0) / 0.1
+    out = under(PID((0.0, 0.0), kd=(2.0, 6.0), derivative_filter=smoothing), error, rate)
+    z = control.tf([1, 0], [1], 0.1)
+    s = (1 - 1 / z) / 0.1
+    answer = control.forced_response(
+        s / (1 + smoothing * s), inputs=error, timepts=0.1 * np.arange(200)
+    )
+    np.testing.assert_allclose(out, np.outer(answer.outputs, (2.0, 6.0)), atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "options, wrong",
+    [
+        ({"limit": (0.0, 1.0)}, "limit must be positive"),
+        ({"limit": 3.0}, "limit must have shape"),
+        ({"anti_windup": "clamp"}, "anti_windup must be one of"),
+        ({"anti_windup": 0.0}, "anti_windup must lie in"),
+        ({"derivative_filter": -0.1}, "derivative_filter must lie in"),
+    ],
+)
+def test_wrong_options_are_refused(options, wrong):
+    with pytest.raises(ValueError, match=wrong):
+        PID(KP, KI, KD, **options)
 
 
 @pytest.mark.parametrize("arm", [CMU_DD_ARM_II, REYES_KELLY_ARM], ids=lambda a: a.name)

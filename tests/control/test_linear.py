@@ -52,21 +52,28 @@ def test_steady_errors_under_a_constant_load():
             np.testing.assert_allclose(gain, np.hstack([np.eye(2), give]), atol=1e-9)
 
 
+DAMPERS = [("tachometer", 0.0), ("tachometer", 0.01), ("difference", 0.0), ("difference", 0.03)]
+
+
+@pytest.mark.parametrize("velocity, smoothing", DAMPERS)
 @pytest.mark.parametrize("delay", [0, 1, 4])
 @pytest.mark.parametrize("ki", [(0.0, 0.0), KI], ids=["PD", "PID"])
-def test_sampled_loop_is_the_simulated_one(ki, delay):
+def test_sampled_loop_is_the_simulated_one(ki, delay, velocity, smoothing):
     """On an arm whose equations are linear, sample by sample, with two coupled joints."""
     t = np.arange(500) * STEP
     target = np.deg2rad([3.0, -2.0]) * (t > 0)[:, None]
     recording = follow(
         LINEAR_ARM,
-        PID(KP, ki, KD),
+        PID(KP, ki, KD, derivative_filter=smoothing),
         Trajectory(target, 0 * target, 0 * target),
         t,
         effects=Effects((ViscousFriction(VISCOUS),), (Delay(delay),)),
         log_every=1,
+        velocity=velocity,
     )
-    loop = closed_loop(plant(inertia_of(LINEAR_ARM), VISCOUS), KP, ki, KD, STEP, delay)
+    joints = plant(inertia_of(LINEAR_ARM), VISCOUS)
+    options = {"derivative_filter": smoothing, "velocity": velocity}
+    loop = closed_loop(joints, KP, ki, KD, STEP, delay, **options)
     inputs = np.vstack([target.T, np.zeros((2, t.size))])
     answer = control.forced_response(loop, t, inputs).outputs.T
     assert np.abs(answer).max() > np.deg2rad(3)
@@ -76,15 +83,51 @@ def test_sampled_loop_is_the_simulated_one(ki, delay):
 GAINS = [(200.0, 0.0, 0.0), (200.0, 0.0, 20.0), (200.0, 90.0, 20.0)]
 
 
+@pytest.mark.parametrize("velocity, smoothing", DAMPERS)
 @pytest.mark.parametrize("period, delay", [(None, 0), (STEP, 0), (STEP, 3)])
 @pytest.mark.parametrize("joint", [0, 1])
-def test_closing_an_opened_loop_gives_the_closed_one(joint, period, delay):
+def test_closing_an_opened_loop_gives_the_closed_one(joint, period, delay, velocity, smoothing):
     """Unity feedback around what was cut open has the closed loop's poles."""
     joints = plant(inertia_of(CMU_DD_ARM_II), VISCOUS)
-    opened = opened_loop(joints, KP, KI, KD, period, delay, joint=joint)
+    options = {"derivative_filter": smoothing, "velocity": velocity if period else "tachometer"}
+    opened = opened_loop(joints, KP, KI, KD, period, delay, joint=joint, **options)
     poles = control.feedback(opened, 1).poles()
-    expected = closed_loop(joints, KP, KI, KD, period, delay).poles()
-    np.testing.assert_allclose(np.sort_complex(poles), np.sort_complex(expected), atol=1e-6)
+    expected = closed_loop(joints, KP, KI, KD, period, delay, **options).poles()
+    np.testing.assert_allclose(np.sort_complex(poles), np.sort_complex(expected), atol=1e-5)
+
+
+@pytest.mark.parametrize("smoothing", [0.0, 0.01, 0.1])
+@pytest.mark.parametrize("gains", [(400.0, 0.0, 75.0), (400.0, 300.0, 75.0)])
+def test_margins_are_python_controls_with_a_filtered_derivative(gains, smoothing):
+    """The same loops from transfer functions: continuous, and sampled with a law in 1/z."""
+    kp, ki, kd = gains
+    J, F, late = 6.5, 5.3, 1
+    s, z = control.tf("s"), control.tf("z")
+    joint = 1 / (J * s**2 + F * s)
+    law = kp + kd * s / (1 + smoothing * s) + (ki / s if ki else 0)
+    slope = (1 - 1 / z) / STEP
+    sampled = kp + kd * slope / (1 + smoothing * slope) + (ki / slope if ki else 0)
+    sampled *= control.sample_system(joint, STEP, "zoh") * z**-late
+    timed = {"period": STEP, "delay": late, "velocity": "difference"}
+    for known, options in ((joint * law, {}), (sampled, timed)):
+        options["derivative_filter"] = smoothing
+        found = margins(opened_loop(plant(J, F), *gains, **options))
+        gain, phase, _, crossover = control.margin(known)
+        assert found.phase_deg == pytest.approx(phase, abs=1e-4)
+        assert found.crossover == pytest.approx(crossover, rel=1e-6)
+        ours = [np.log(g) for g in (found.upper_gain, found.lower_gain) if 0 < g < np.inf]
+        if ours:
+            assert min(np.abs(ours - np.log(gain))) < 1e-3
+
+
+def test_a_filter_costs_the_angle_by_which_it_turns_the_damper():
+    """Exact at a crossover: the loop's phase there, with the damper's part turned and shrunk."""
+    smoothing = 0.03
+    found = margins(opened_loop(plant(6.5, 5.3), 400.0, 0.0, 75.0, derivative_filter=smoothing))
+    w = 1j * found.crossover
+    loop = (400.0 + 75.0 * w / (1 + smoothing * w)) / (6.5 * w**2 + 5.3 * w)
+    assert abs(loop) == pytest.approx(1.0)
+    assert found.phase_deg == pytest.approx(np.rad2deg(np.angle(-loop)))
 
 
 @pytest.mark.parametrize("gains", GAINS)

@@ -111,7 +111,9 @@ def test_controllers_on_each_arm(engine, arm, velocity):
         encoder=(Quantisation.encoder(14),),
     )
     laws = [
-        PID((250.0, 70.0), (150.0, 40.0), (20.0, 6.0), integral_limit=3.0),
+        PID((250.0, 70.0), (150.0, 40.0), (20.0, 6.0), derivative_filter=0.01),
+        PID((250.0, 70.0), (150.0, 40.0), (20.0, 6.0), (20.0, 4.0)),
+        PID((250.0, 70.0), (150.0, 40.0), (20.0, 6.0), (20.0, 4.0), anti_windup=0.1),
         Feedforward(arm, pd((150.0, 40.0), (20.0, 5.0))),
     ]
     for law in laws:

@@ -52,11 +52,16 @@ def plant(arm: Arm, effects: Effects) -> dict:
 
 
 def gains(controller: PID) -> dict:
-    """The gains of a `PID` for the engine's ``pid``; one pair each."""
+    """The fields of a `PID` for the engine's ``pid``; one pair each of gains and limit."""
     if not isinstance(controller, PID):
         raise TypeError(f"controller must be a PID, got {controller!r}")
     pairs = {name: _pair(getattr(controller, name)) for name in ("kp", "ki", "kd")}
-    return {**pairs, "integral_limit": controller.integral_limit}
+    return {
+        **pairs,
+        "limit": None if controller.limit is None else _pair(controller.limit),
+        "anti_windup": controller.anti_windup,
+        "derivative_filter": controller.derivative_filter,
+    }
 
 
 def loop(setup: Setup, recording: Recording) -> dict:

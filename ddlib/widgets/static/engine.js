@@ -59,13 +59,23 @@ const limited = (plant, tau) =>
 
 // Sampled control. A law is a function of what is wanted ({ q, qd, qdd }) and what is measured.
 
-export function pid({ kp, ki, kd, integral_limit: most }, step) {
+export function pid({ kp, ki, kd, limit = null, anti_windup: cure = null, derivative_filter: smooth = 0 }, step) {
   const integral = [0, 0];
+  const damping = [0, 0];
+  const kept = smooth / (smooth + step);
   return (wanted, q, v) =>
     JOINTS.map((j) => {
       const error = wanted.q[j] - q[j];
-      integral[j] = Math.min(most, Math.max(-most, integral[j] + ki[j] * error * step));
-      return kp[j] * error + integral[j] + kd[j] * (wanted.qd[j] - v[j]);
+      const before = integral[j];
+      integral[j] += ki[j] * error * step;
+      damping[j] = kept * damping[j] + (1 - kept) * (wanted.qd[j] - v[j]);
+      const asked = kp[j] * error + integral[j] + kd[j] * damping[j];
+      if (!limit) return asked;
+      const given = Math.min(limit[j], Math.max(-limit[j], asked));
+      if (cure === "conditional") {
+        if (given !== asked && asked * error > 0) integral[j] = before;
+      } else if (cure) integral[j] += (given - asked) * Math.min(1, step / cure);
+      return given;
     });
 }
 

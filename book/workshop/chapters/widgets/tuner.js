@@ -14,7 +14,7 @@ const BODE = "fig-pid-bode"; // figure of the chapter that explains margins
 // Everything about one setting.
 function tuned(loop, setting) {
   const { plant, modes, elbow, step, every, periods, motion } = loop;
-  const gains = { integral_limit: 1e6 };
+  const gains = {};
   for (const name of ["kp", "ki", "kd"]) gains[name] = [setting[name], setting[name] * elbow[name]];
   const { reference } = loop;
   const feedback = pid(gains, step);
