@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import control
 import numpy as np
+from scipy.optimize import brentq
 
 from ddlib.control import linear
+from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import Effects, Load
+from ddlib.setups import JOINT_DAMPING_KP as KP, JOINT_DAMPING_VISCOUS as VISCOUS
+from ddlib.simulation import CONTROL_STEP
 from ddlib.tables import quote, significant
 from ddlib.trajectories import APPENDIX_I
 from workshop.chapters.exercises import Exercise, OneOf, judging
@@ -16,7 +20,16 @@ from workshop.report.evidence.verdicts import Measured
 
 
 def _quoted() -> None:
-    """The numbers of the lesson: what moving the tuner's sliders changes."""
+    """The numbers of the lesson: a limit of the whole arm, and what the tuner's sliders change."""
+    joints = linear.plant(CMU_DD_ARM_II.mass_matrix([0.0, 0.0]), VISCOUS)
+
+    def growth(times):
+        """Of the fastest swing in a period, the shoulder's spring some times as stiff."""
+        loop = linear.closed_loop(joints, (times * KP[0], KP[1]), period=CONTROL_STEP)
+        return np.log(np.abs(loop.poles()).max())
+
+    rule = 2 * VISCOUS[0] / CONTROL_STEP  # N m/rad
+    quote("pid-alone", KP[0] / rule * brentq(growth, 1.0, 40.0))
     tuner = PIDTuner()
     moves = {"base": {}, "damped": {"kd": 60}, "ahead": {"kd": 60, "feedforward": True}}
     times = np.array(tuner.spec["panels"][0]["x"])
