@@ -19,7 +19,8 @@ from workshop.chapters.widgets import loops
 from workshop.chapters.widgets.tuner import PIDTuner, tuned
 
 ARM = CMU_DD_ARM_II
-START = {"kp": KP[0], "ki": 0.0, "kd": 0.0, "late": 0, "feedforward": False}
+CALM = {"load": False, "dry": False, "limit": "none", "noise": False}
+START = {"kp": KP[0], "ki": 0.0, "kd": 0.0, "late": 0, "feedforward": False, **CALM}
 TIMES = 0.01 * np.arange(351)
 LATE = (TIMES >= 1) & (TIMES < 3)
 JOINTS = ("shoulder", "elbow")
@@ -90,8 +91,10 @@ def test_growth_and_margins_are_python_controls(engine, arm):
         kp, kd = rng.uniform(40, 1200), rng.uniform(0, 80) * (k % 4 > 0)
         law = gains(kp, rng.uniform(0, 900) * (k % 3 > 0), kd)
         step, late = rng.choice([0.0005, 0.002, 0.008]), int(rng.choice([0, 1, 3, 20]))
-        near = loops.linear(arm, VISCOUS, law, late, step)
-        given.append([{name: x.tolist() for name, x in law.items()}, step, late])
+        velocity = ("tachometer", "difference")[k % 2]
+        near = loops.linear(arm, VISCOUS, law, late, step, velocity)
+        gained = {name: x.tolist() for name, x in law.items()}
+        given.append([{**gained, "differs": velocity == "difference"}, step, late])
         wanted.append([near.growth, *np.ravel([near.phase_deg, near.crossover], order="F")])
     answer = np.array(engine(LINEAR, [loops.modes(arm, VISCOUS), given]), dtype=float)
     wanted = np.array(wanted)
@@ -120,10 +123,14 @@ def test_what_happens_if(tuner):
     for k in (1, 3):  # settles, where it grew
         assert before[k]["growth"] > 0.5 and after[k]["growth"] < -2
         assert swing(after[k], 2, 3) < swing(known_run(), 2, 3) / 5
-    first = [x[6]["shoulder torque"][0] for x in (before, after)]
+    limited, cured = after[6], known_run(**{**questions[6]["settings"][1], "limit": "anti-windup"})
+    assert limited["growth"] < -1 and np.isnan(before[6]["stopped"])
+    assert np.nanmax(np.abs(limited["shoulder error"])) > 20
+    assert np.abs(cured["shoulder error"]).max() < 8
+    first = [x[7]["shoulder torque"][0] for x in (before, after)]
     assert first[1] == pytest.approx(2 * first[0], rel=0.01) and first[0] < -10
     for joint in JOINTS:
-        off, on = (x[7][f"{joint} error"] for x in (before, after))
+        off, on = (x[8][f"{joint} error"] for x in (before, after))
         assert rms(on[LATE]) < rms(off[LATE]) / 2
         assert np.abs(on).max() == pytest.approx(np.abs(off).max(), rel=0.1)
 
@@ -177,6 +184,37 @@ def test_drag_keys_and_the_ghost(page_with, tuner):
     assert_computed(page, kp=kp, kd=150.0, ki=ki, late=1)
     assert page.evaluate(SEEN)["before"] == {**START, "kp": pytest.approx(kp)}
     assert "stable" in page.locator(".verdict").inner_text()
+
+
+DISTURBED = [
+    {"kd": 60.0, "ki": 1500.0, "load": True, "dry": True},
+    {"kd": 60.0, "ki": 1500.0, "load": True, "limit": "yes"},
+    {"kd": 60.0, "ki": 1500.0, "load": True, "limit": "anti-windup", "feedforward": True},
+    {"kd": 60.0, "noise": True, "late": 1, "limit": "yes"},
+]
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("setting", DISTURBED, ids=lambda setting: "-".join(setting))
+def test_switches(page_with, tuner, setting):
+    """From the page's address: everything is ddlib's, and a motor gives no more than its limit."""
+    texts = {k: str(x).lower() if isinstance(x, bool) else x for k, x in setting.items()}
+    query = ",".join(f"{k}:{x}" for k, x in texts.items())
+    page = page_with(tuner, query=f"?pidtuner={query}", calm=True)
+    assert_computed(page, **setting)
+    most = np.nanmax(np.abs(np.array(page.evaluate(SEEN)["torque"], float)), axis=1)
+    assert ("limit" in setting) == bool((most <= [20, 6]).all())
+
+
+def test_an_integral_carries_the_load_and_a_clean_velocity_is_quiet():
+    damped = {"kd": 60.0, "load": True}
+    spring, patient = (known_run(**damped, ki=ki)["shoulder error"][LATE] for ki in (0.0, 1500.0))
+    assert abs(patient.mean()) < abs(spring.mean()) / 2
+    jumps = [
+        np.abs(np.diff(known_run(kd=60.0, noise=on)["shoulder torque"][LATE])).mean()
+        for on in (False, True)
+    ]
+    assert jumps[1] > 20 * jumps[0]
 
 
 @pytest.mark.browser

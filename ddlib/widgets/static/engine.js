@@ -1,7 +1,7 @@
 // The live engine: an arm under sampled control, and window networks. As in ddlib, whose numbers it
 // gives (tests/widgets/ test_engine.py): angles in rad, torques in N m, times in s, [shoulder, elbow]
 // in every pair. A plant is what _plain.py writes: { arm, lengths, viscous, coulomb, smoothing,
-// encoder, limit }.
+// encoder, limit }, and a load (N m) that a page may put on the joints.
 
 import { armAcceleration, armMass, armTorque, encoderReading, frictionTorque } from "./physics.js";
 
@@ -102,8 +102,9 @@ export function drive(plant, q, v, step) {
     run.tau = limited(plant, law(wanted, run.reading, speed));
   };
   run.hold = () => {
+    const acts = plant.load ? run.tau.map((x, j) => x + plant.load[j]) : run.tau;
     for (let k = 0; k < parts; k++) {
-      Object.assign(run, advance(plant, run.q, run.v, run.tau, step / parts));
+      Object.assign(run, advance(plant, run.q, run.v, acts, step / parts));
     }
   };
   return run;

@@ -4,12 +4,12 @@ import { JOINTS, drive } from "ddlib/engine.js";
 
 // Follow a reference; the run is over at the first logged sample with a joint's error beyond `most`
 // (rad), whose place `stopped` then is.
-export function guarded(plant, law, reference, step, every, most) {
+export function guarded(plant, law, reference, step, every, most, velocity) {
   const run = drive(plant, reference.q[0], [0, 0], step);
   const log = { q: [], tau: [], stopped: null };
   for (let k = 0; k < reference.q.length; k++) {
     const wanted = { q: reference.q[k], qd: reference.qd[k], qdd: reference.qdd[k] };
-    run.sample(law, wanted);
+    run.sample(law, wanted, velocity);
     if (k % every === 0) {
       log.q.push(run.q);
       log.tau.push(run.tau);
@@ -31,16 +31,21 @@ const periodOf = ({ rate }, step) => {
 };
 
 // How fast the slowest or least stable motion of the closed loop grows, 1/s; negative if it dies out.
-export function growthOf(modes, { kp, ki, kd }, step, late) {
+// `differs`: the velocity is the difference of two readings, of which the older is a state, too.
+export function growthOf(modes, { kp, ki, kd, differs }, step, late) {
   const integral = ki.some(Boolean);
-  const waiting = integral ? 6 : 4; // places of the torques on their way
+  const older = integral ? 6 : 4;
+  const waiting = older + (differs ? 2 : 0); // places of the torques on their way
   const n = waiting + 2 * late;
   const A = new Float64Array(n * n);
   const add = (row, column, x) => (A[row * n + column] += x);
   // The torque that acts: what the law makes of the newest reading, or the first on its way.
   const law = (row, i, factor) => {
     add(row, i, -factor * (kp[i] + step * ki[i]));
-    add(row, 2 + i, -factor * kd[i]);
+    if (differs) {
+      add(row, i, (-factor * kd[i]) / step);
+      add(row, older + i, (factor * kd[i]) / step);
+    } else add(row, 2 + i, -factor * kd[i]);
     if (integral) add(row, 4 + i, factor);
   };
   const acts = late ? (row, i, factor) => add(row, waiting + i, factor) : law;
@@ -59,6 +64,7 @@ export function growthOf(modes, { kp, ki, kd }, step, late) {
       add(4 + i, 4 + i, 1);
       add(4 + i, i, -step * ki[i]);
     }
+    if (differs) add(older + i, i, 1);
     for (let k = 0; k < late; k++) {
       const row = waiting + 2 * k + i;
       if (k < late - 1) add(row, row + 2, 1);
@@ -110,7 +116,7 @@ const plus = ([a, b], [c, d]) => [a + c, b + d];
 
 // The loop cut open where one joint's torque is commanded, the other joint's loop closed: its answer
 // to a sine of `omega` rad/s.
-function openLoop(modes, { kp, ki, kd }, step, late, joint, omega) {
+function openLoop(modes, { kp, ki, kd, differs }, step, late, joint, omega) {
   const z = [Math.cos(omega * step), Math.sin(omega * step)];
   const before = [z[0] - 1, z[1]];
   const delay = [Math.cos(omega * step * late), -Math.sin(omega * step * late)];
@@ -122,7 +128,8 @@ function openLoop(modes, { kp, ki, kd }, step, late, joint, omega) {
   const H = (i, j) => {
     const spring = plus([kp[i], 0], over(times([ki[i] * step, 0], z), before));
     return moved.reduce((sum, { shape, speed, angle }) => {
-      const answer = plus(times(spring, angle), times([kd[i], 0], speed));
+      const rate = differs ? over(times(before, angle), times([step, 0], z)) : speed;
+      const answer = plus(times(spring, angle), times([kd[i], 0], rate));
       return plus(sum, times([shape[i] * shape[j], 0], times(delay, answer)));
     }, [0, 0]);
   };

@@ -14,7 +14,7 @@ from scipy.linalg import eigh
 
 from ddlib.control import PID, Controller, Feedforward, closed_loop, margins, opened_loop, plant
 from ddlib.dynamics import Arm
-from ddlib.effects import Delay, Effects, ViscousFriction
+from ddlib.effects import Effects
 from ddlib.simulation import CONTROL_STEP, LOG_STEP, follow
 from ddlib.trajectories import Trajectory
 
@@ -61,14 +61,15 @@ class _SwitchedOff:
         return torque
 
 
-def run(arm: Arm, viscous, law: Controller, late: int, reference: Trajectory, t, most) -> _Run:
-    """Drive an arm with viscous friction along a reference, the torque some periods late.
+def run(
+    arm: Arm, effects: Effects, law: Controller, reference: Trajectory, t, most, velocity
+) -> _Run:
+    """Drive an arm along a reference; the velocity as `ddlib.simulation.follow` has it.
 
     The reference is sampled at the control period; the run is over at an error of `most` (rad).
     """
-    effects = Effects(friction=(ViscousFriction(viscous),), actuator=(Delay(late),) * bool(late))
-    every = round(LOG_STEP / CONTROL_STEP)
-    recording = follow(arm, _SwitchedOff(law), reference, t, effects=effects, log_every=every)
+    options = {"log_every": round(LOG_STEP / CONTROL_STEP), "velocity": velocity}
+    recording = follow(arm, _SwitchedOff(law), reference, t, effects=effects, **options)
     error, torque = recording.tracking_error.copy(), recording.tau_true.copy()
     beyond = np.flatnonzero((np.abs(error) > most).any(-1))
     stopped = int(beyond[0]) if beyond.size else None
@@ -89,24 +90,25 @@ class _Linear(NamedTuple):
     crossover: np.ndarray
 
 
-def linear(arm: Arm, viscous, law: dict, late: int, period=CONTROL_STEP) -> _Linear:
+def linear(
+    arm: Arm, viscous, law: dict, late: int, period=CONTROL_STEP, velocity="tachometer"
+) -> _Linear:
     """Poles and margins of the sampled loop at the stretched arm, by python-control.
 
     `law` holds the gains of a `PID` by name, `late` counts periods from a reading to its torque.
     """
     joints = plant(arm.mass_matrix([0.0, 0.0]), viscous)
-    poles = closed_loop(joints, **law, period=period, delay=late).poles()
+    timed = {"period": period, "delay": late, "velocity": velocity}
+    poles = closed_loop(joints, **law, **timed).poles()
     growth = float(np.log(np.abs(poles).max()) / period)
     if growth >= 0:
         return _Linear(growth, np.full(2, np.nan), np.full(2, np.nan))
-    by_joint = [
-        margins(opened_loop(joints, **law, period=period, delay=late, joint=j)) for j in (0, 1)
-    ]
+    by_joint = [margins(opened_loop(joints, **law, **timed, joint=j)) for j in (0, 1)]
     return _Linear(
         growth, np.array([m.phase_deg for m in by_joint]), np.array([m.crossover for m in by_joint])
     )
 
 
 def controller(arm: Arm, law: dict, ahead: bool) -> Controller:
-    """A `PID` with the gains ``law``; with ``ahead`` it corrects the rigid ``arm``'s torques."""
+    """A `PID` with the fields ``law``; with ``ahead`` it corrects the rigid ``arm``'s torques."""
     return Feedforward(arm, PID(**law)) if ahead else PID(**law)

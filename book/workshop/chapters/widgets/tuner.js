@@ -14,12 +14,17 @@ const BODE = "fig-pid-bode"; // figure of the chapter that explains margins
 // Everything about one setting.
 function tuned(loop, setting) {
   const { plant, modes, elbow, step, every, periods, motion } = loop;
-  const gains = {};
+  const gains = { differs: setting.noise };
   for (const name of ["kp", "ki", "kd"]) gains[name] = [setting[name], setting[name] * elbow[name]];
   const { reference } = loop;
-  const feedback = pid(gains, step);
+  const { load, limit } = loop;
+  const arm = { ...plant, coulomb: setting.dry ? loop.dry : [0, 0], encoder: setting.noise ? loop.count : 0 };
+  Object.assign(arm, { load: setting.load ? load : null, limit: setting.limit === "none" ? null : limit });
+  const cured = setting.limit === "anti-windup" ? { limit, anti_windup: "conditional" } : {};
+  const feedback = pid({ ...gains, ...cured }, step);
   const law = behind(setting.late, setting.feedforward ? feedforward(plant.arm, feedback) : feedback);
-  const log = guarded(plant, law, reference, step, every, loop.most);
+  const velocity = setting.noise ? "difference" : "tachometer";
+  const log = guarded(arm, law, reference, step, every, loop.most, velocity);
   const count = Math.floor((periods - 1) / every) + 1;
   const shape = (of) => JOINTS.map((j) => Float64Array.from({ length: count }, (_, k) => (k < log.q.length ? of(k, j) : NaN)));
   const wanted = reference.q.filter((_, k) => k % every === 0);

@@ -1,4 +1,4 @@
-"""Three gains, a delay and a model: what they do to tracking error, torque and stability."""
+"""Three gains, a delay, a model and what disturbs: tracking error, torque and stability."""
 
 from __future__ import annotations
 
@@ -9,10 +9,23 @@ import numpy as np
 import traitlets as t
 
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
-from ddlib.effects import Effects, ViscousFriction
+from ddlib.effects import (
+    CoulombFriction,
+    Delay,
+    Effects,
+    Load,
+    Quantisation,
+    Saturation,
+    ViscousFriction,
+)
 from ddlib.figures import JOINTS
 from ddlib.paper import TEST_TRAJECTORY
-from ddlib.setups import JOINT_DAMPING_KP as KP, JOINT_DAMPING_VISCOUS
+from ddlib.setups import (
+    JOINT_DAMPING_BITS,
+    JOINT_DAMPING_COULOMB,
+    JOINT_DAMPING_KP as KP,
+    JOINT_DAMPING_VISCOUS,
+)
 from ddlib.simulation import CONTROL_STEP, LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
 from ddlib.widgets.base import CurveWidget
@@ -25,7 +38,9 @@ from workshop.chapters.widgets.loops import controller, linear, modes, run
 
 _HERE = Path(__file__).parent
 
-_VISCOUS = JOINT_DAMPING_VISCOUS  # friction of the joints, N m s/rad, the only effect here
+_VISCOUS = JOINT_DAMPING_VISCOUS  # friction of the joints, N m s/rad, the only effect at first
+_LOAD, _LIMIT = (10.0, 0.0), (20.0, 6.0)  # N m: a motor that can just carry the load and move
+_COUNT = 2 * np.pi / 2**JOINT_DAMPING_BITS  # of the encoder, rad
 _MOST_DEG = 30.0  # error at which a run is stopped: larger than any of a stable loop here
 _LATE = (0, 1, 5, 10, 20)  # control periods between a reading and its torque
 
@@ -36,14 +51,16 @@ _TIMES = _T[:: round(LOG_STEP / CONTROL_STEP)]  # when the curves are sampled, s
 # Gains of the elbow over the shoulder's; those of the damper give both the same damping ratio.
 _ELBOW = {"kp": KP[1] / KP[0], "ki": KP[1] / KP[0], "kd": 0.2}
 
-_START = {"kp": KP[0], "ki": 0.0, "kd": 0.0, "late": 0, "feedforward": False}  # the book's arm
+_CALM = {"load": False, "dry": False, "limit": "none", "noise": False}  # nothing disturbs
+_START = {"kp": KP[0], "ki": 0.0, "kd": 0.0, "late": 0, "feedforward": False, **_CALM}
 
 _CODE = """\
 from ddlib.dynamics import CMU_DD_ARM_II
 from workshop.chapters.widgets.tuner import tuned
 
 run = tuned(
-    CMU_DD_ARM_II, kp={kp}, ki={ki}, kd={kd}, late={late}, feedforward={feedforward}
+    CMU_DD_ARM_II, kp={kp}, ki={ki}, kd={kd}, late={late}, feedforward={feedforward},
+    load={load}, dry={dry}, limit="{limit}", noise={noise},
 )
 run["shoulder error"], run["growth"], run["stopped"]"""
 
@@ -113,6 +130,20 @@ _QUESTIONS = (
         "An integral adds up past errors. So it pushes late, and a late push feeds the swing.",
     ),
     _question(
+        "the motor gives 20 N m at most, under a damper of 60 N m s/rad and an integral gain of "
+        "3000 N m/(rad s)",
+        {"ki": 3000.0, "kd": 60.0, "limit": "yes"},
+        (
+            "The arm starts a little slower.",
+            "The arm is thrown far off, although the linear loop is stable.",
+            "The linear loop becomes unstable.",
+        ),
+        1,
+        "The integral winds up while the motor is at its limit. Then choose the limit with "
+        "anti-windup.",
+        {"ki": 3000.0, "kd": 60.0},
+    ),
+    _question(
         "you make a damper of 60 N m s/rad twice as strong",
         {"kd": 120.0},
         (
@@ -144,11 +175,13 @@ class PIDTuner(CurveWidget):
     """Tune the gains of both joints on trajectory 6; the arm moves, and so does the last one.
 
     The sliders set the shoulder's gains; the elbow's are in the ratio of `JOINT_DAMPING_KP`, its
-    derivative gain a fifth. The arm is rigid, with viscous friction and exact sensors;
-    feedforward uses the rigid arm as its model, without friction. The page computes everything by
-    the live engine. A run is stopped where a joint's error passes 30 degrees. Growth and margins
-    are those of the sampled linear loop at the stretched arm, margins with the loop cut open at one
-    joint's torque while the other joint's is closed.
+    derivative gain a fifth. The arm is rigid, with viscous friction and exact sensors; switches add
+    a load, dry friction, a limit of the torque, and an encoder whose readings are differenced for
+    the velocity. Feedforward uses the rigid arm as its model, without friction. The page computes
+    everything by the live engine. A run is stopped where a joint's error passes 30 degrees. Growth
+    and margins are those of the sampled linear loop at the stretched arm, which knows of the
+    switches only that the velocity is a difference; margins with the loop cut open at one joint's
+    torque while the other joint's is closed.
     """
 
     _esm = bundle(_HERE / "tuner.js")
@@ -166,7 +199,21 @@ class PIDTuner(CurveWidget):
                 Parameter("ki", "Integral gain", 0, 4000, 0, "N m/(rad s)"),
                 Parameter("kd", "Derivative gain", 0, 150, 0, "N m s/rad"),
                 Choice("late", "The torque comes late by", milliseconds, 0, "slider"),
-                Choice("feedforward", "Feedforward", {False: "off", True: "on"}, False, "switch"),
+                *(
+                    Choice(name, label, {False: "off", True: "on"}, False, "switch")
+                    for name, label in (
+                        ("feedforward", "Feedforward"),
+                        ("load", f"Load of {_LOAD[0]:g} N m on the shoulder"),
+                        ("dry", "Dry friction"),
+                        ("noise", "Velocity from a coarse encoder"),
+                    )
+                ),
+                Choice(
+                    "limit",
+                    f"Torque limit ({_LIMIT[0]:g} and {_LIMIT[1]:g} N m)",
+                    {"none": "none", "yes": "yes", "anti-windup": "yes, with anti-windup"},
+                    "none",
+                ),
             ],
             [
                 Panel(
@@ -191,13 +238,18 @@ class PIDTuner(CurveWidget):
                 Scalar("crossover", "Shoulder crossover", "rad/s", 1),
             ],
             code=_CODE,
-            note="The sliders set the shoulder's gains. The elbow's follow in a fixed ratio.",
+            note="The sliders set the shoulder's gains. The elbow's follow in a fixed ratio. "
+            "The linear loop knows neither load nor limit nor dry friction.",
         )
         effects = Effects(friction=(ViscousFriction(_VISCOUS),))
         loop = {
             "plant": plant(CMU_DD_ARM_II, effects),
             "modes": modes(CMU_DD_ARM_II, _VISCOUS),
             "elbow": _ELBOW,
+            "load": _LOAD,
+            "dry": JOINT_DAMPING_COULOMB,
+            "limit": _LIMIT,
+            "count": _COUNT,
             "extents": np.deg2rad(APPENDIX_I[TEST_TRAJECTORY - 1]).tolist(),
             "motion": MOTION_SECONDS,
             "step": CONTROL_STEP,
@@ -227,21 +279,32 @@ def _gains(kp, ki, kd) -> dict[str, np.ndarray]:
     return {k: np.multiply.outer(np.asarray(x, float), (1.0, _ELBOW[k])) for k, x in given.items()}
 
 
-def tuned(arm: Arm, kp, ki, kd, late, feedforward) -> dict:
+def tuned(
+    arm: Arm, kp, ki, kd, late, feedforward, load=False, dry=False, limit="none", noise=False
+) -> dict:
     """Curves and numbers of one setting, by ddlib's simulator and python-control.
 
-    Errors in degrees, torques in N m, NaN after the end of a run; growth of the linear loop in 1/s.
+    Errors in degrees, the motors' torques in N m, NaN after the end of a run; growth of the linear
+    loop in 1/s.
     """
     law = _gains(kp, ki, kd)
     reference = Trajectory(*pick_and_place(APPENDIX_I[TEST_TRAJECTORY - 1], _T))
-    drive = controller(arm, law, feedforward)
-    done = run(arm, _VISCOUS, drive, late, reference, _T, np.deg2rad(_MOST_DEG))
-    near = linear(arm, _VISCOUS, law, late)
+    cured = {"limit": _LIMIT} if limit == "anti-windup" else {}
+    drive = controller(arm, law | cured, feedforward)
+    pushed = np.array(_LOAD) * load
+    effects = Effects(
+        friction=(ViscousFriction(_VISCOUS), *[CoulombFriction(JOINT_DAMPING_COULOMB)] * dry),
+        actuator=(Delay(late), *[Saturation(_LIMIT)] * (limit != "none"), Load(tuple(pushed))),
+        encoder=(Quantisation(_COUNT),) * noise,
+    )
+    velocity = "difference" if noise else "tachometer"
+    done = run(arm, effects, drive, reference, _T, np.deg2rad(_MOST_DEG), velocity)
+    near = linear(arm, _VISCOUS, law, late, velocity=velocity)
     error = np.rad2deg(done.error)
     rows = {}
     for j, joint in enumerate(JOINTS):
         rows[f"{joint} error"] = error[:, j]
-        rows[f"{joint} torque"] = done.torque[:, j]
+        rows[f"{joint} torque"] = done.torque[:, j] - pushed[j]
         rows[f"{joint} RMS"] = np.sqrt((error[_TIMES < MOTION_SECONDS - 1e-9, j] ** 2).mean())
         rows[f"{joint} phase margin"] = near.phase_deg[j]
     stopped = np.nan if done.stopped is None else _TIMES[done.stopped]
