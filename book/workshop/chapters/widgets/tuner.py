@@ -203,15 +203,19 @@ class PIDTuner(CurveWidget):
                     Choice(name, label, {False: "off", True: "on"}, False, "switch")
                     for name, label in (
                         ("feedforward", "Feedforward"),
-                        ("load", f"Load of {_LOAD[0]:g} N m on the shoulder"),
+                        ("load", f"Load, {_LOAD[0]:g} N m"),
                         ("dry", "Dry friction"),
-                        ("noise", "Velocity from a coarse encoder"),
+                        ("noise", "Encoder noise"),
                     )
                 ),
                 Choice(
                     "limit",
-                    f"Torque limit ({_LIMIT[0]:g} and {_LIMIT[1]:g} N m)",
-                    {"none": "none", "yes": "yes", "anti-windup": "yes, with anti-windup"},
+                    "Torque limit",
+                    {
+                        "none": "none",
+                        "yes": f"{_LIMIT[0]:g} N m",
+                        "anti-windup": f"{_LIMIT[0]:g} N m, anti-windup",
+                    },
                     "none",
                 ),
             ],
@@ -239,7 +243,8 @@ class PIDTuner(CurveWidget):
             ],
             code=_CODE,
             note="The sliders set the shoulder's gains. The elbow's follow in a fixed ratio. "
-            "The linear loop knows neither load nor limit nor dry friction.",
+            "The load pushes the shoulder. With encoder noise the velocity is the difference of "
+            "two coarse readings. The linear loop knows neither load nor limit nor dry friction.",
         )
         effects = Effects(friction=(ViscousFriction(_VISCOUS),))
         loop = {
