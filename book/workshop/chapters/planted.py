@@ -15,7 +15,6 @@ from workshop.report import results
 
 KINDS = {
     "the arm": "the arm's own",
-    "inertia alone": "inertia alone",
     "another arm along this motion": "another arm's",
     "position alone": "position alone",
     "velocity alone": "velocity alone",
@@ -24,7 +23,7 @@ KINDS = {
 }
 """Kinds of torques in the order of the figure, and what it calls them; with inertia first."""
 
-_WITH_INERTIA = 3
+_WITH_INERTIA = 2
 
 
 @cache
@@ -108,7 +107,7 @@ def shapes_and_sizes() -> Illustration:
         axes = figure.subplots(1, len(panels), sharey=True)
         for axis, (label, (shown, arm)) in zip(axes, panels.items()):
             for k, values in enumerate(shown.values()):
-                colour = COLOURS[0 if k < _WITH_INERTIA else 1]
+                colour = INK if k < _WITH_INERTIA else COLOURS[3]
                 if arm is None:
                     axis.plot(values, [k, k], color=colour, lw=1)
                     axis.plot(values[:1], [k], "o", color=colour, ms=7)
