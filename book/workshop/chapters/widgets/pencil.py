@@ -59,7 +59,14 @@ class TurnTheParabola(CurveWidget):
                 Choice("learnt", "Learnt", names, names[0]),
             ],
             [
-                Panel("One row: shoulder to shoulder", "row", CENTRE, _time(width), kind="stems"),
+                Panel(
+                    "A direct row: shoulder to shoulder",
+                    "row",
+                    CENTRE,
+                    _time(width),
+                    kind="stems",
+                    y_range=("lowest", "highest"),
+                ),
                 *torques,
             ],
             alt="Stems: a row of weights, its parabola turned up. Two panels with torques over "
@@ -78,7 +85,11 @@ class TurnTheParabola(CurveWidget):
         extra = after.torque(self._windows)[0] - before
         small = turned(model, self._knob, 1 + (change or 1e-3)).torque(self._windows)[0] - before
         needed = (change or 1e-3) * self._inertial
+        most = np.abs([turned(model, self._knob, x).weights.direct_weights[0, 0, 0]
+                       for x in (0.5, 1.5)]).max()  # fmt: skip
         curves = {
+            "lowest": -1.1 * most,
+            "highest": 1.1 * most,
             "row": after.weights.direct_weights[0, 0, 0],
             "share": (small * needed).sum() / (needed**2).sum(),
         }
