@@ -20,7 +20,7 @@ import variants
 LESSONS = [*assignment.lessons(ROOT)]
 QUICK = ("dynamics", "window-size")
 VARIED = [name for name in LESSONS if not isinstance(solved.variants(name), str)]
-FAST = ("dynamics", "feedback", "inertia-in-the-weights")  # all their variants, at each run
+FAST = ("dynamics", "feedback")  # all their variants, at each run
 # Where a question is quick whose answer depends on the settings, and others take long.
 ONLY = dict.fromkeys(
     ("adaptive-control", "learning-in-the-loop", "window-networks", "feedforward"), 1
