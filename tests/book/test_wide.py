@@ -61,7 +61,6 @@ def test_formulas_fit_a_phone(site, visit):
         "adaptive-control",
         "convolution-filters",
         "rivals",
-        "whose-filters",
         "inertia-in-the-weights",
     ):
         page = visit(f"{site}/book/{name}.html", width=390).page

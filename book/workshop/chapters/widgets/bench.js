@@ -321,8 +321,9 @@ function build({ model, el }) {
     const box = svg.getBoundingClientRect();
     const [left, top] = [event.clientX - box.x, event.clientY - box.y];
     if (held === "fold") {
-      const folded = (xOf(n - 1) - left) / (xOf(n - 1) - xOf(0));
-      return set({ fold: folded > 0.96 ? 1 : Math.max(0, Math.round(200 * folded) / 200) });
+      const across = (left - xOf(half)) / (xOf(n - 1) - xOf(half) + PAPER);
+      const folded = Math.acos(Math.max(-1, Math.min(1, across))) / Math.PI; // the grip under the pointer
+      return set({ fold: folded > 0.9 ? 1 : Math.round(200 * folded) / 200 });
     }
     const angle = ((at.wire.middle - top) * 2 * TALLEST) / at.wire.height;
     const t = x[n - 1];
@@ -346,10 +347,7 @@ function build({ model, el }) {
       const steps = (KEYS[pressed] ?? 0) * (shiftKey ? 5 : 1);
       const ends = { Home: -1, End: 1 }[pressed];
       if (!steps && !ends) return false;
-      if (name === "fold") {
-        const left = { ArrowLeft: -1, ArrowRight: 1 }[pressed] ? -steps : steps; // to the left is over
-        return set({ fold: ends ? (ends + 1) / 2 : Math.min(1, Math.max(0, get("fold") + 0.1 * left)) });
-      }
+      if (name === "fold") return set({ fold: ends ? (ends + 1) / 2 : Math.min(1, Math.max(0, get("fold") + 0.1 * steps)) });
       bendTo(name, ends ? ends * reach[name] : get(name) + (steps * reach[name]) / 20);
     });
   }

@@ -42,7 +42,7 @@ class FoldBench(PageWidget):
     _css = styles(_HERE / "bench.css")
 
     row = t.Unicode(help="label of the row").tag(sync=True)
-    fold = t.Float(0.0, min=0.0, max=1.0, help="from 0, flat, to 1, folded over").tag(sync=True)
+    fold = t.Float(0.08, min=0.0, max=1.0, help="from 0, flat, to 1, folded over").tag(sync=True)
     lift = t.Float(REACH["lift"], help="angle in the window's centre, °").tag(sync=True)
     tilt = t.Float(0.0, help="speed in the window's centre, °/s").tag(sync=True)
     bend = t.Float(0.0, help="acceleration, °/s²").tag(sync=True)

@@ -60,7 +60,7 @@ from workshop.chapters.widgets.tuner import tuned
 
 run = tuned(
     CMU_DD_ARM_II, kp={kp}, ki={ki}, kd={kd}, late={late}, feedforward={feedforward},
-    load={load}, dry={dry}, limit="{limit}", noise={noise},
+    load={load}, dry={dry}, limit={limit}, noise={noise},
 )
 run["shoulder error"], run["growth"], run["stopped"]"""
 
