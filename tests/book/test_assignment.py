@@ -173,10 +173,11 @@ def test_what_is_missing_is_named(handed_out):
         assignment.write("verdict", 1)
 
 
-def test_a_lesson_has_ten_variants_or_none():
+def test_a_lesson_has_ten_variants_or_says_why_not():
     assert len(VARIED) > 10 and {*FAST} <= {*VARIED}
-    for name in VARIED:
-        assert len(solved.variants(name)) >= 10, name
+    for name in LESSONS:
+        known = solved.variants(name)
+        assert len(known) >= 10 if name in VARIED else len(known.split()) > 5, name
 
 
 @pytest.mark.parametrize("name", FAST)

@@ -1,7 +1,7 @@
 """Chapters with widgets in a real JupyterLab: run them, move a control, kill the kernel, go on.
 
-Four of them have every kind of widget: one that is pulled, one with a recording behind it, and
-those of weights and training. One is run whole, as a reader does; of the others the cells
+Five of them have every kind of widget: one that is pulled, one with a recording behind it, and
+those of weights, filters and training. One is run whole, as a reader does; of the others the cells
 that their widgets need, since every notebook is executed elsewhere, too.
 """
 
@@ -27,7 +27,7 @@ TOKEN = "token-of-the-test"
 STARTING, RUNNING, ANSWER = 120, 300, 60  # seconds, on a busy machine
 NOTE = "The kernel does not answer"
 WHOLE = "book/hinton-diagrams"
-OTHERS = ("index", "trajectories-and-recording", "window-networks")
+OTHERS = ("index", "trajectories-and-recording", "convolution-filters", "window-networks")
 CHAPTERS = [WHOLE, *(f"book/{name}" for name in OTHERS)]
 
 

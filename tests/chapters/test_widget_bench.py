@@ -23,26 +23,6 @@ def widget():
     return FoldBench(ROWS, LOG_STEP, MOTION)
 
 
-def test_products_add_up_to_the_row_s_answer(widget):
-    widget.row, widget.lift, widget.tilt, widget.bend = "rough", -2.0, 31.0, 420.0
-    x = LOG_STEP * S
-    path = np.deg2rad(-2.0 + 31.0 * x + 210.0 * x**2)
-    np.testing.assert_allclose(widget.products.sum(0), ROUGH * path, rtol=1e-12)
-    np.testing.assert_allclose(widget.products[2], (ROUGH - ROUGH[::-1]) / 2 * path, rtol=1e-12)
-    np.testing.assert_allclose(widget.products[0], ROUGH.mean() * path, rtol=1e-12)
-
-
-@pytest.mark.parametrize(("row", "motion"), [("line", "tilt"), ("parabola", "bend")])
-def test_a_line_hears_speed_alone_and_a_parabola_acceleration_alone(widget, row, motion):
-    widget.row, widget.lift = row, 0.0
-    for moved, most in REACH.items():
-        setattr(widget, moved, most)
-        heard = np.abs(widget.products.sum(-1)) > 1e-9
-        assert heard.tolist() == [False, row == "parabola" and moved == motion,
-                                  row == "line" and moved == motion]  # fmt: skip
-        setattr(widget, moved, 0.0)
-
-
 @pytest.mark.parametrize(("name", "value"), [("tilt", 51.0), ("fold", 1.2), ("row", "none")])
 def test_what_is_out_of_reach_is_refused(widget, name, value):
     with pytest.raises(traitlets.TraitError, match=name):
@@ -65,6 +45,19 @@ def test_the_page_takes_rows_apart_and_plays_as_python_does(browser):
         played["odd"]["wanted"], LOG_STEP * (3 * S**2).sum() * MOTION[7:-7, 1]
     )
     assert played["odd"]["told"] > 0.99 and np.abs(played["even"]["got"]).max() < 1e-9
+
+
+@pytest.mark.browser
+def test_a_line_hears_speed_alone_and_a_parabola_acceleration_alone(browser):
+    heard = """([f, x, motion]) => Object.values(halvesOf(f)).map((part) =>
+      part.reduce((all, v, k) => all + v * angles(x, motion)[k], 0))"""
+    still = dict.fromkeys(REACH, 0.0)
+    with functions(browser, LESSONS / "bench.js") as call:
+        for row, part, motion in (("line", 2, "tilt"), ("parabola", 1, "bend")):
+            for moved, most in REACH.items():
+                given = [ROWS[row].tolist(), (LOG_STEP * S).tolist(), {**still, moved: most}]
+                answers = np.abs(call(heard, given)) > 1e-9
+                assert answers.tolist() == [k == part and moved == motion for k in range(3)]
 
 
 @pytest.mark.browser

@@ -28,7 +28,7 @@ export function halvesOf(f) {
   };
 }
 
-const angles = (x, { lift, tilt, bend }) => x.map((t) => lift + tilt * t + (bend * t * t) / 2);
+export const angles = (x, { lift, tilt, bend }) => x.map((t) => lift + tilt * t + (bend * t * t) / 2);
 
 // What a row and a motion (q, v, a) put into each jar at every moment, and what it would be if the part
 // were a multiple of the joint's angle, acceleration and speed.
@@ -55,7 +55,8 @@ function build({ model, el }) {
   const half = (n - 1) / 2;
   const x = rows[labels[0]].map((_, k) => step * (k - half));
   const widest = largest(motion[0]) / RAD;
-  let row, parts, played, most; // of the chosen row
+  let row, parts, played; // of the chosen row
+  let most, tall, highest; // of a jar, of a product and of what is played
   let moment = -1; // of the motion, or -1 while the wire is the reader's
   let timer = 0;
 
@@ -204,8 +205,6 @@ function build({ model, el }) {
   function drawBands(path) {
     const open = get("fold") === 1;
     hint.style.display = open ? "none" : "";
-    const tall = largest(Object.values(parts).flatMap((part) => part.map((f, k) => f * largest(Object.keys(reach).map((name) => angles(x, { lift: 0, tilt: 0, bend: 0, [name]: reach[name] })[k])) * RAD)));
-    const highest = largest(Object.values(played).flatMap(({ got }) => got));
     bands.forEach((band, i) => {
       const { middle, height, top } = at.bands[i];
       band.g.style.display = open ? "" : "none";
@@ -274,7 +273,10 @@ function build({ model, el }) {
     parts = halvesOf(row);
     played = playedOf(parts, x, motion);
     const alone = Object.keys(reach).map((name) => angles(x, { lift: 0, tilt: 0, bend: 0, [name]: reach[name] }));
-    most = largest(alone.flatMap((path) => Object.values(parts).map((part) => sum(part.map((f, k) => f * path[k] * RAD)))));
+    const products = alone.flatMap((path) => Object.values(parts).map((part) => part.map((f, k) => f * path[k] * RAD)));
+    most = largest(products.map(sum));
+    tall = largest(products.flat());
+    highest = largest(Object.values(played).flatMap(({ got }) => got));
     choices.forEach((choice, k) => choice.setAttribute("aria-pressed", String(labels[k] === get("row"))));
     draw();
   }

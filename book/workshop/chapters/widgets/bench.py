@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
-from ddlib.analysis import decompose
 from ddlib.figures import INK, ROLES, illustrate
 from ddlib.widgets.base import PageWidget
 from ddlib.widgets.scripts import bundle, styles
@@ -48,7 +47,7 @@ class FoldBench(PageWidget):
     bend = t.Float(0.0, help="acceleration, °/s²").tag(sync=True)
 
     def __init__(self, rows: Mapping[str, np.ndarray], step: float, motion):
-        self._rows, self._step = {k: np.asarray(f, float) for k, f in rows.items()}, step
+        self._rows = {k: np.asarray(f, float) for k, f in rows.items()}
         first = next(iter(self._rows))
         alt = (
             "A strip of paper with the weights of one row as stems; below it a joint's path in the "
@@ -79,15 +78,6 @@ class FoldBench(PageWidget):
             known = ", ".join(self._rows)
             raise t.TraitError(f"row must be among {known}, got {proposal.value!r}")
         return proposal.value
-
-    @property
-    def products(self) -> np.ndarray:
-        """Each part times the angles (rad) under it, ``(part, width)``; sums fill the jars."""
-        f = self._rows[self.row]
-        parts = decompose(f)
-        whole = np.stack([np.broadcast_to(parts.constant, f.shape), parts.even, parts.odd])
-        x = self._step * (np.arange(f.size) - f.size // 2)
-        return whole * np.deg2rad(self.lift + self.tilt * x + self.bend * x**2 / 2)
 
 
 def _still(f, step, alt) -> str:
