@@ -6,7 +6,7 @@
   What is not there is an error.
 - ``{reading}`page page``` is the time to read some pages.
 - ``{exercises} kind`` lists exercises, ``{exercise-minutes}`` says by which rule their minutes are
-  estimated, ``{objectives} lesson`` lists those of a lesson, or of all without an argument.
+  estimated, ``{objectives}`` lists what readers can do after each lesson.
 - ``{lecture} 1`` is a lecture of `book/lectures.yml`: a table of what to show and ask, and the
   answers in a fold. ``{lessons-at-a-glance}`` is a table of the walk.
 """
@@ -207,14 +207,10 @@ class Listed(LessonDirective):
 
 
 class Objectives(LessonDirective):
-    """``{objectives} lesson``: its list; without an argument those of all, below links to them."""
-
-    optional_arguments = 1
+    """``{objectives}``: those of all lessons, below links to them."""
 
     def run(self):
         self.depends_on(self.root / "book" / "objectives.yml", self.root / "book" / "quizzes.yml")
-        if self.arguments:
-            return [self.items(lesson(self.root, f"book/{self.arguments[0]}"), "")]
         return [
             node
             for of in lessons(self.root)
@@ -226,7 +222,7 @@ class Objectives(LessonDirective):
         ]
 
     def items(self, of: Lesson, at: str) -> nodes.bullet_list:
-        """The list of a lesson's objectives; `at` is its address, "" on its own page."""
+        """The list of a lesson's objectives; `at` is its address."""
         return nodes.bullet_list("", *(self.item(objective, of, at) for objective in of.objectives))
 
     def item(self, objective: Objective, of: Lesson, at: str) -> nodes.list_item:

@@ -1,8 +1,8 @@
-"""What a lesson's page has before *On your own*: *What you can do now*, and *Check yourself*.
+"""What *Try it yourself* begins with: the questions of a lesson, *Check yourself*.
 
-Objectives and questions come from the book's lists, by `lessons.py`. A question is a native
+They come from the book's list, by `lessons.py`. A question is a native
 fieldset whose explanations are a fold; `_static/quiz.js` puts buttons to it. In readers' notebooks
-both sections are markdown.
+they are markdown.
 """
 
 from __future__ import annotations
@@ -14,9 +14,7 @@ from docutils import nodes
 from lessons import OWN, Lesson, lesson, questions
 from sphinx.util.docutils import SphinxDirective
 
-HEADING = "## Check yourself"
-CAN_DO = "## What you can do now"
-BEGINS = "After this lesson you can"  # before the list, whose entries go on with it
+HEADING = "### Check yourself"
 
 
 class Tag(nodes.General, nodes.TextElement):
@@ -30,45 +28,37 @@ class Unsearched(nodes.comment):
     """
 
 
-def with_sections(source: str, of: Lesson) -> str:
-    """A markdown cell of a reader's notebook: where it asks for own work, both sections first."""
-    if OWN not in source:
+def with_questions(source: str, of: Lesson) -> str:
+    """A markdown cell of a reader's notebook: where it asks for own work, the questions first."""
+    if OWN not in source or not of.questions:
         return source
-    parts = []
-    if of.objectives:
-        lines = [f"- {objective.can} ({', '.join(objective.by)})" for objective in of.objectives]
-        parts += [CAN_DO, BEGINS, "\n".join(lines)]
-    parts += [HEADING] if of.questions else []
+    parts = [OWN + "\n" + HEADING]
     for number, question in enumerate(of.questions, 1):
         answers = question["answers"]
         choices = "\n".join(f"- **{answer['letter']}.** {answer['text']}" for answer in answers)
         whys = "\n".join(f"- **{answer['verdict']}** {answer['why']}" for answer in answers)
         fold = f"<details>\n<summary>Answers</summary>\n\n{whys}\n\n</details>"
         parts += [f"**{number}.** {question['question']}", choices, fold]
-    return source.replace(OWN, "\n\n".join([*parts, OWN]))
+    return source.replace(OWN, "\n\n".join(parts) + "\n")
 
 
 def call(app, page, text):
-    """Put the directives before *On your own* of a lesson that has objectives or questions.
+    """Put the directive below *Try it yourself* of a lesson that has questions.
 
     Sphinx gives a page's source as a list of one text, to be changed in place.
     """
     of = lesson(Path(app.srcdir), page)
     if of is None:
         return
-    for path in (of.root / "book" / f"{name}.yml" for name in ("objectives", "quizzes")):
-        if path.is_file():  # a part of the book may lack it
-            app.env.note_dependency(str(path))
-    calls = ""
-    if of.objectives:
-        calls += f"{CAN_DO}\n\n{BEGINS}\n\n```{{objectives}} {of.name}\n```\n\n"
+    path = of.root / "book" / "quizzes.yml"
+    if path.is_file():  # a part of the book may lack it
+        app.env.note_dependency(str(path))
     if of.questions:
-        calls += f"{HEADING}\n\n```{{check-yourself}}\n```\n\n"
-    if calls:
+        asked = f"{OWN}\n{HEADING}\n\n```{{check-yourself}}\n```\n"
         notebook = json.loads(text[0])
         for cell in notebook["cells"]:
             if cell["cell_type"] == "markdown":
-                cell["source"] = "".join(cell["source"]).replace(OWN, calls + OWN)
+                cell["source"] = "".join(cell["source"]).replace(OWN, asked)
         text[0] = json.dumps(notebook)
 
 

@@ -22,7 +22,7 @@ import latexcodec  # noqa: F401  (it knows TeX's letters: "ulatex")
 import nbformat
 from dd_failures import HYPHEN
 from dd_public import address, repository
-from dd_quiz import with_sections
+from dd_quiz import with_questions
 from lessons import CHANGE_THIS, FOLDED, Lesson, contents, lesson, lessons
 from pybtex.database import parse_file
 
@@ -197,7 +197,7 @@ def reader_notebook(of: Lesson, known: Known, glued: dict):
     plain, cells = Plain(of.page, known, glued), []
     for cell in of.notebook.cells:
         if cell.cell_type != "code":
-            text = plain.text(with_sections(cell.source, of))
+            text = plain.text(with_questions(cell.source, of))
             cells.append(nbformat.v4.new_markdown_cell(text))
             continue
         tags = cell.metadata.get("tags", [])

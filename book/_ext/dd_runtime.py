@@ -1,7 +1,7 @@
-"""How long the notebooks of this build took, known once all have been executed, and to read.
+"""How long the notebooks of this build took, known once all have been executed.
 
 The role ``{runtime}`words``` is a page's own time in prose, or the words where none was measured;
-above its paragraph it puts the time to read the page. The directive ``{chapter-times}`` is a table
+its paragraph is the grey line below the first picture. The directive ``{chapter-times}`` is a table
 of all.
 """
 
@@ -10,13 +10,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from docutils import nodes
-from lessons import WORDS_A_MINUTE, chapters, lesson, time_to_read
+from lessons import chapters
 from myst_nb.sphinx_ import NbMetadataCollector
 from sphinx.addnodes import pending_xref
 from sphinx.transforms.post_transforms import SphinxPostTransform
 from sphinx.util.docutils import SphinxDirective
 
-MEASURED = "on one core when this page was built"
+MEASURED = "on one core"
 
 
 class RunTime(nodes.Inline, nodes.TextElement):
@@ -69,7 +69,7 @@ class InsertTimes(SphinxPostTransform):
         for node in list(self.document.findall(RunTime)):
             words = node.astext() if own is None else f"{spoken_time(own)} {MEASURED}"
             if isinstance(node.parent, nodes.paragraph):
-                self.say_before(node.parent)
+                node.parent["classes"].append("needs")
             node.replace_self(nodes.inline(text=words))
         for node in list(self.document.findall(ChapterTimes)):
             total = sum(times.values())
@@ -78,14 +78,6 @@ class InsertTimes(SphinxPostTransform):
             ]
             head = ("chapter", "time", "share")
             node.replace_self(table([head, *rows, ("all", f"{total:.0f} s", "100%")]))
-
-    def say_before(self, paragraph: nodes.paragraph) -> None:
-        """The time to read this page, in a paragraph before that of its time to run."""
-        minutes = time_to_read([lesson(Path(self.env.srcdir), self.env.docname)])
-        pace = f"counted at {WORDS_A_MINUTE} words a minute, with formulas and figures"
-        words = nodes.Text(f" {minutes}, {pace}.")
-        new = nodes.paragraph("", "", nodes.strong(text="Time to read"), words)
-        paragraph.parent.insert(paragraph.parent.index(paragraph), new)
 
     def link(self, page: str) -> pending_xref:
         title = self.env.titles[page].astext()

@@ -2,8 +2,8 @@
 
 A lesson is a notebook that `_toc.yml` names. Its questions stand in `book/quizzes.yml`, its
 objectives in `book/objectives.yml`, its variants in `book/variants.yml`, each below its name. A
-lesson may lack any of them. An exercise is a paragraph below the heading *On your own* that begins
-with ``**2. Its title** (a derivation).``
+lesson may lack any of them. An exercise is a paragraph below the heading *Try it yourself* that
+begins with ``**2. Its title** (a derivation).``
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import yaml
 from sphinx_external_toc.api import SiteMap, TocTree
 from sphinx_external_toc.parsing import parse_toc_yaml
 
-ON_YOUR_OWN = "On your own"
+ON_YOUR_OWN = "Try it yourself"
 OWN = f"## {ON_YOUR_OWN}\n"
 CHANGE_THIS = "change-this"  # tag of the cell whose settings all open cells follow
 FOLDED = ("remove-cell", "remove-input", "hide-input")  # tags of code that does not stand open

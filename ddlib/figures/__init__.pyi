@@ -16,6 +16,7 @@ from .style import (
     INK as INK,
     JOINTS as JOINTS,
     ROLES as ROLES,
+    TONES as TONES,
     Illustration as Illustration,
     check_label as check_label,
     illustrate as illustrate,

@@ -52,8 +52,10 @@ ROLES = {
     "odd": ("#4a1fa8", "#cbb5ff"),
     "wanted": ("#007f86", "#2ec4d6"),
 }
-"""What a colour means, on light and on dark pages; a figure is drawn in the first. Ink is what was
-measured."""
+"""What a colour means, on light and on dark pages. Ink is what was measured."""
+
+TONES = {role: light for role, (light, _) in ROLES.items()}
+"""By role, the colour that a figure is drawn in; a dark page puts the other one in its place."""
 
 DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)))
 """Line styles that go with the colours, so that colour is never the only difference."""

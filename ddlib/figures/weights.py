@@ -18,7 +18,7 @@ from ddlib.figures.style import (
     INK,
     JOINTS,
     NARROW,
-    ROLES,
+    TONES,
     Illustration,
     illustrate,
     legend_above,
@@ -48,7 +48,7 @@ def network_diagram(weights: Weights) -> Illustration:
     def draw(figure: Figure):
         axis = figure.subplots()
         inputs = [
-            row(axis, 0, width, 5.2 * j, 5.2 * j + 4.2, ROLES[JOINTS[j]][0]) for j in range(joints)
+            row(axis, 0, width, 5.2 * j, 5.2 * j + 4.2, TONES[JOINTS[j]]) for j in range(joints)
         ]
         middle = row(axis, 1.25, hidden, 1.2, 6.4, FAINT)
         top = row(axis, 2.5, outputs, 8.6, 9.6, COLOURS[2])
@@ -283,7 +283,7 @@ def _row_and_parts(axis: Axes, parts, step: float, room: float) -> None:
     axis.plot(x, f, color=INK, lw=2.8, alpha=0.55, label="weights")
     for k, (name, y) in enumerate({"constant": constant, "even": parts.even,
                                    "odd": parts.odd}.items()):  # fmt: skip
-        look = {"color": ROLES[name][0], "ls": ("-.", "-", "--")[k], "lw": 1.5}
+        look = {"color": TONES[name], "ls": ("-.", "-", "--")[k], "lw": 1.5}
         axis.plot(x, y, label=name, **look)
     low, high = axis.get_ylim()
     ticks = MaxNLocator(5).tick_values(low, high)

@@ -10,7 +10,7 @@ EVERY = lessons.lessons(ROOT)
 WITH_OBJECTIVES = [each for each in EVERY if each.objectives]
 BARE, FULL = (
     "# Bare\n\nNothing else.\n",
-    """# Full\n\nWords.\n\n## On your own
+    """# Full\n\nWords.\n\n## Try it yourself
 
 **1. Weigh it** (a derivation). How heavy?\n
 **2. Turn it** (a design). How far?\n\n## Further reading\n\n**3. No exercise.**
@@ -42,7 +42,7 @@ def test_a_lesson_needs_a_notebook_and_a_line_in_the_contents(two):
     bare, full = lessons.walk(two)
     assert lessons.chapters(two) == [bare.path, full.path] and bare.headings == ["Bare"]
     assert not (bare.exercises or bare.questions or bare.objectives)
-    assert dd_quiz.with_sections("## On your own\n", bare) == "## On your own\n"
+    assert dd_quiz.with_questions("## Try it yourself\n", bare) == "## Try it yourself\n"
     assert lessons.lesson(two, "book/none") is None
 
 
@@ -59,12 +59,9 @@ def test_what_stands_beside_a_lesson_is_found_by_its_name(two):
         "exercise-2",
         f"quiz-{question['key']}",
     ]
-    text = dd_quiz.with_sections("Before.\n\n## On your own\n\nAfter.", full)
-    assert text.startswith(
-        "Before.\n\n## What you can do now\n\nAfter this lesson you can\n\n- count"
-    )
-    assert "(exercise 2, question 1)\n\n## Check yourself\n\n**1.** How many?" in text
-    assert text.count("<details>") == 1 and text.endswith("</details>\n\n## On your own\n\nAfter.")
+    text = dd_quiz.with_questions("Before.\n\n## Try it yourself\n\nAfter.", full)
+    assert "## Try it yourself\n\n### Check yourself\n\n**1.** How many?" in text
+    assert text.count("<details>") == 1 and text.endswith("</details>\n\nAfter.")
 
 
 def test_exercises_are_numbered_in_order():
@@ -85,24 +82,15 @@ def test_each_objective_is_tested_and_each_test_has_its_objective(of):
 
 @pytest.mark.built
 def test_pages_have_their_sections_and_links_that_lead_somewhere(parsed):
-    """Objectives before questions before exercises; the search does not find wrong answers."""
+    """Questions before exercises; the search does not find wrong answers."""
     for of in EVERY:
         page = parsed(of.page)
-        sections = [section["id"] for section in page.select("article section[id]")]
-        wanted = ["what-you-can-do-now"] * bool(of.objectives)
-        wanted += ["check-yourself"] * bool(of.questions)
-        if wanted:
-            at = sections.index("on-your-own")
-            assert sections[at - len(wanted) : at] == wanted, of.name
+        if of.questions:
+            first = page.select_one("#try-it-yourself section[id]")
+            assert first["id"] == "check-yourself", of.name
         assert len(page.select("#check-yourself form fieldset > legend")) == len(of.questions)
         folds = page.select("#check-yourself details.answer:not([open]) .why.right")
         assert len(folds) == len(of.questions)
-        items = page.select("#what-you-can-do-now li")
-        assert len(items) == len(of.objectives)
-        for item, objective in zip(items, of.objectives):
-            links = item.select("a[href]")
-            assert [link.get_text() for link in links] == objective.by
-            assert all(page.find(id=link["href"].lstrip("#")) for link in links), objective
     listed = parsed("book/lessons").select("#what-each-lesson-teaches li a[href]")
     assert len(listed) == sum(len(each.by) for of in EVERY for each in of.objectives)
     for link in listed:

@@ -24,14 +24,13 @@ OTHERS = ("evidence/feedback", "rivals", "use-it-on-your-arm", "ledger", "lesson
 ONE_OF_EACH_KIND = [WITH_WIDGETS[0], *(f"book/{name}" for name in OTHERS)]
 """One page with a widget, and one of each kind that has none."""
 
-# Where the first figure or widget begins, and *You will*; in px from the page's top.
+# Where the first figure or widget begins, and the grey line; in px from the page's top.
 FIRST = """
 () => {
   const seen = (el) => el.checkVisibility() && el.getBoundingClientRect().height > 100;
   const all = [...document.querySelectorAll("article :is(.ddlib-figure, .ddlib-widget)")];
   const top = (el) => (el ? el.getBoundingClientRect().top + scrollY : null);
-  const below = document.evaluate("//article//strong[text()='You will']", document, null, 9, null);
-  return [top(all.find(seen)), top(below.singleNodeValue)];
+  return [top(all.find(seen)), top(document.querySelector("article p.needs"))];
 }
 """
 LOWEST = {1280: 700, 390: 744}  # px, on a laptop and on a phone

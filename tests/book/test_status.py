@@ -23,6 +23,6 @@ def test_every_notebook_has_its_time_and_share(parsed):
     assert sum(seconds.values()) == pytest.approx(total, abs=0.5 + 0.05 * len(names))
     shares = [int(row[2].rstrip("%")) for row in cells[:-1]]
     assert sum(shares) == pytest.approx(100, abs=len(names))
-    pattern = re.compile(rf"Time to run\s+(.*?) {dd_runtime.MEASURED}")
+    pattern = re.compile(rf"It runs in\s+(.*?) {dd_runtime.MEASURED}")
     told = {name: pattern.search(parsed(name).article.get_text())[1] for name in CHAPTERS}
     assert told == {name: dd_runtime.spoken_time(seconds[name]) for name in CHAPTERS}

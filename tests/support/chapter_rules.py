@@ -8,12 +8,12 @@ from book_pages import WALK
 from bookkeeping import lines_of_bookkeeping
 
 MAX_VISIBLE_LINES, MAX_VISIBLE_COLUMNS = 25, 84  # one idea, and what a page has room for
-MAX_PROMISE = 30  # words of *You will*
+MAX_NEEDS = 40  # words of the grey line
 HIDDEN = {"hide-input", "hide-cell", "remove-input", "remove-cell"}
 TUTORIAL = "book/use-it-on-your-arm"
 FROM_SCRATCH = {TUTORIAL, *WALK}  # open cells run alone, so they import and print
-OWN, READING = "On your own", "Further reading"
-FOUND = "What you found"  # ends a lesson; the paper's sentences stand on its evidence page
+OWN, READING = "Try it yourself", "Further reading"
+FOUND = "What you found"  # before what a reader tries
 CHANGE_THIS = "change-this"  # tag of the one cell whose settings all open cells follow
 MOST_WORDS = 2500
 MOST_HIDDEN, LEAST_OPEN = 12, 0.6  # hidden lines of a lesson, share of its lines that stand open
@@ -79,14 +79,14 @@ EVERYWHERE = (
 
 
 def closing(notebook) -> list:
-    """After *On your own*, if it has that: what was found, with or without further reading."""
+    """What was found, then exercises, then further reading; a chapter may lack the last two."""
     found = headings(prose(notebook), 2)
-    after = found[found.index(OWN) + 1 :] if OWN in found else found[-1:]
-    return [] if after and set(after) <= {FOUND, READING} else found
+    last = [name for name in (FOUND, OWN, READING) if name in found]
+    return [] if FOUND in found and found[-len(last) :] == last else found
 
 
 def exercises(notebook) -> list:
-    """The cells after the heading *On your own*, up to the next one and with it."""
+    """The cells after the heading *Try it yourself*, up to the next one and with it."""
     section, found = "", []
     for cell in notebook.cells:
         if section == OWN:
@@ -108,15 +108,15 @@ CHAPTER = (closing,)
 # --- every lesson, and the tutorial -------------------------------------------------------
 
 
-def before_the_promise(notebook) -> list:
-    """The cells before the first one that has *You will* in it."""
-    promise = (k for k, cell in enumerate(notebook.cells) if "**You will**" in cell.source)
-    return notebook.cells[: next(promise, 0)]
+def before_the_needs(notebook) -> list:
+    """The cells before the grey line, the one with the time to run."""
+    needs = (k for k, cell in enumerate(notebook.cells) if "{runtime}`" in cell.source)
+    return notebook.cells[: next(needs, 0)]
 
 
 def title_and_thesis_stand_alone(notebook) -> list:
     """A title and one paragraph, then the thing itself; below it, what to do with it."""
-    cells = before_the_promise(notebook)
+    cells = before_the_needs(notebook)
     shown = (
         k for k, c in enumerate(cells) if c.cell_type == "code" and "remove-cell" not in tags(c)
     )
@@ -124,20 +124,16 @@ def title_and_thesis_stand_alone(notebook) -> list:
     return [] if len(above) == 1 and len(paragraphs(above[0])) == 2 else above or ["no title"]
 
 
-def three_lines_follow(notebook) -> list:
-    """*You will* in one sentence, *You need*, *Time to run*: a paragraph each, nothing else."""
-    cell = notebook.cells[len(before_the_promise(notebook))]
-    lines = paragraphs(cell.source)
-    begins = ("**You will** ", "**You need** ", "**Time to run** {runtime}`")
-    if len(lines) != 3 or not all(map(str.startswith, lines, begins)):
-        return lines
-    words = lines[0].split()[2:]
-    return [] if len(words) <= MAX_PROMISE and not re.search(r"[.?!] ", lines[0]) else words
+def one_grey_line_follows(notebook) -> list:
+    """What a reader needs, and how long the page runs: one paragraph, nothing else."""
+    line = notebook.cells[len(before_the_needs(notebook))].source
+    fine = line.startswith("You need ") and len(paragraphs(line)) == 1
+    return [] if fine and len(line.split()) <= MAX_NEEDS else [line]
 
 
 LESSON = (
     title_and_thesis_stand_alone,
-    three_lines_follow,
+    one_grey_line_follows,
 )
 
 
@@ -187,7 +183,7 @@ def code_stands_open(notebook) -> list:
 
 def figures_are_made_in_the_open(notebook) -> list:
     """Below the first screen; what comes from a file says that it is the book's."""
-    later = notebook.cells[len(before_the_promise(notebook)) :]
+    later = notebook.cells[len(before_the_needs(notebook)) :]
     hidden = [c for c in later if c.cell_type == "code" and tags(c) & HIDDEN]
     told = (c.metadata.get("mystnb", {}).get("figure", {}).get("caption") for c in hidden)
     return [text for text in told if text and "the book's" not in text.lower()]
@@ -201,7 +197,7 @@ def exercises_wait_for_an_answer(notebook) -> list:
         for cell in cells
         if cell.cell_type == "code"
     ]
-    asked = len(re.findall(r"^\*\*\d+\. ", prose(notebook).partition("## On your own")[2], re.M))
+    asked = len(re.findall(r"^\*\*\d+\. ", prose(notebook).partition(f"## {OWN}")[2], re.M))
     wrong = [] if kinds == ["starter", "check"] * asked else [kinds]
     return wrong + [c.id for c in cells if c.cell_type == "markdown" and open_answer(c.source)]
 

@@ -25,7 +25,7 @@ from ddlib.figures import (
     illustrate,
     legend_above,
 )
-from ddlib.figures.style import DASHES, INK, JOINTS, NARROW, ROLES
+from ddlib.figures.style import DASHES, INK, JOINTS, NARROW, TONES
 from ddlib.setups import JOINT_DAMPING
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, quote
@@ -256,7 +256,7 @@ def _draw_filter(axis: Axes) -> None:
     linear = Linear().fit(_learnt()[0])
     milliseconds = 1000 * LOG_STEP * (np.arange(_WIDTH) - _WIDTH // 2)
     for j, weights in enumerate(linear.matrix[:, 1].reshape(2, _WIDTH)):
-        axis.plot(milliseconds, weights, DASHES[j], color=ROLES[JOINTS[j]][0], label=JOINTS[j])
+        axis.plot(milliseconds, weights, DASHES[j], color=TONES[JOINTS[j]], label=JOINTS[j])
     axis.axhline(0, color=FAINT, lw=0.6)
     axis.set(xlabel="time in the window, ms", ylabel="weight, N m/rad")
     axis.legend(loc="lower left", handlelength=1.2, fontsize=8, borderaxespad=0.1)
@@ -294,7 +294,7 @@ def _draw_network(axis: Axes) -> None:
     centred = window[0] - window[0].mean(-1, keepdims=True)
     for j, angles in enumerate(centred):
         x = np.linspace(0, 0.45, _WIDTH) + 0.55 * j
-        axis.plot(x, 0.1 + 0.08 * angles / abs(centred).max(), ".", color=ROLES[JOINTS[j]][0], ms=3)
+        axis.plot(x, 0.1 + 0.08 * angles / abs(centred).max(), ".", color=TONES[JOINTS[j]], ms=3)
         axis.text(x.mean(), -0.03, f"{JOINTS[j]}", ha="center", va="top", fontsize=8.5)
         for unit in units:
             axis.plot([x.mean(), unit], [0.2, 0.52], color=FAINT, lw=0.5, alpha=0.7)

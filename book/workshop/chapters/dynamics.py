@@ -29,7 +29,7 @@ from ddlib.figures.style import (
     INK,
     JOINTS,
     NARROW,
-    ROLES,
+    TONES,
     Illustration,
     illustrate,
 )
@@ -210,10 +210,10 @@ def arm_sketch(arm: Arm, q) -> Illustration:
         reach = 1.55
         axis.plot([ex, ex * reach], [ey, ey * reach], color=FAINT, ls=":")
         axis.plot(
-            [0, ex], [0, ey], color=ROLES["shoulder"][0], lw=9, solid_capstyle="round", alpha=0.85
+            [0, ex], [0, ey], color=TONES["shoulder"], lw=9, solid_capstyle="round", alpha=0.85
         )
         axis.plot(
-            [ex, hx], [ey, hy], color=ROLES["elbow"][0], lw=7, solid_capstyle="round", alpha=0.85
+            [ex, hx], [ey, hy], color=TONES["elbow"], lw=7, solid_capstyle="round", alpha=0.85
         )
         for x, y in ((0, 0), (ex, ey)):
             axis.add_patch(Circle((x, y), 0.022, facecolor="white", edgecolor=INK, zorder=3))

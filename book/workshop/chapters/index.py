@@ -24,7 +24,7 @@ from workshop.report.measures import filter_trial as trial
 
 WIDTH = 21
 _SHOWN = 150  # samples of the motion
-_TONE = SimpleNamespace(**{role: light for role, (light, _) in figures.ROLES.items()})
+_TONE = SimpleNamespace(**figures.TONES)
 
 
 def both(weights: Weights) -> tuple[int, int]:

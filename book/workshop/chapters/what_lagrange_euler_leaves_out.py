@@ -28,7 +28,7 @@ from ddlib.figures.style import (
     INK,
     JOINTS,
     NARROW,
-    ROLES,
+    TONES,
     Illustration,
     illustrate,
 )
@@ -88,7 +88,7 @@ def ranking(sizes: Mapping[str, np.ndarray]) -> Illustration:
         low = 10.0 ** np.floor(np.log10(values.min()))
         for j, joint in enumerate(JOINTS):
             rows = places + (j - 0.5) * height
-            look = dict(color=ROLES[joint][0], alpha=0.85, hatch="" if j == 0 else "///", lw=0)
+            look = dict(color=TONES[joint], alpha=0.85, hatch="" if j == 0 else "///", lw=0)
             bars = axis.barh(rows, values[:, j] - low, height * 0.88, left=low, label=joint, **look)
             words = [significant(value, 2) for value in values[:, j]]
             axis.bar_label(bars, words, padding=3, fontsize=7, color=INK)

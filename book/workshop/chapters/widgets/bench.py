@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
-from ddlib.figures import INK, ROLES, illustrate
+from ddlib.figures import INK, TONES, illustrate
 from ddlib.widgets.base import PageWidget
 from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.still import START, encoded
@@ -86,11 +86,11 @@ def _still(f, step, alt) -> str:
 
     def draw(figure):
         strip, wire = figure.subplots(2, 1, sharex=True)
-        strip.vlines(x, 0, f, color=ROLES["network"][0])
-        strip.plot(x, f, "o", ms=4, color=ROLES["network"][0])
+        strip.vlines(x, 0, f, color=TONES["network"])
+        strip.plot(x, f, "o", ms=4, color=TONES["network"])
         strip.axvline(0, color=INK, linestyle="--", linewidth=0.8)
         strip.set(title="The row: fold it here", yticks=[])
-        wire.plot(x, np.full(f.size, REACH["lift"]), "o-", ms=3, color=ROLES["shoulder"][0])
+        wire.plot(x, np.full(f.size, REACH["lift"]), "o-", ms=3, color=TONES["shoulder"])
         wire.set(title="The joint: its angle, °", xlabel="time from the centre, ms")
         wire.set_ylim(-10, 10)
 
