@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import json
+import sys
 import warnings
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from ddlib._check import finite_array, integer, number, seed_number, shaped
+from ddlib._files import write_whole
 from ddlib.paper import APPENDIX_I_EXTENTS_DEG
 
 # The page Provenance shows constants with the notes below them.
@@ -20,6 +24,9 @@ MAX_EXTENT_DEG = 45.0
 APPENDIX_I = np.array(APPENDIX_I_EXTENTS_DEG)
 """Extents of the six trajectories in degrees, shape (6, 2); the last one is the test."""
 APPENDIX_I.setflags(write=False)
+
+KEPT_IN = "picked-extents.json"
+"""The file beside a reader's notebooks that holds extents of their own."""
 
 
 class OutsideFamilyWarning(UserWarning):
@@ -133,3 +140,70 @@ def time_grid(step: float, rest: float = 0.0, duration: float = MOTION_SECONDS) 
     count = round(duration / step)
     # counted in fractions of the motion, so that its end is not one rounding below it
     return np.where(samples == count, duration, samples * duration / count)
+
+
+def keep(extents_deg) -> None:
+    """Keep extents of your own, for `picked` in the lessons that follow.
+
+    They are kept only where a reader runs the cells: beside a notebook, in `KEPT_IN`; in a page
+    that runs, by the browser. What runs without a reader (a build, a test, a script) keeps nothing
+    and finds nothing. Appendix I's extents take the place of your own.
+
+    Parameters
+    ----------
+    extents_deg : array_like, shape (motions, 2)
+        Extents of shoulder and elbow, 0 to 45 degrees; four motions or more, the last is the test.
+    """
+    own = _family(extents_deg)
+    if np.array_equal(own, APPENDIX_I):
+        if _someone_is_there():
+            Path(KEPT_IN).unlink(missing_ok=True)
+        print("The next lessons use the extents of Appendix I.")
+    elif _someone_is_there():
+        write_whole(KEPT_IN, json.dumps(own.tolist()) + "\n")
+        print(f"Kept: the next lessons use your {len(own)} motions.")
+    else:
+        print("Not kept: only a notebook or a page that you run yourself keeps extents.")
+
+
+def picked() -> np.ndarray:
+    """Extents that you kept (`keep`), or Appendix I's: degrees, shape ``(motions, 2)``.
+
+    A line says so if they are your own.
+    """
+    path = Path(KEPT_IN)
+    if not (_someone_is_there() and path.is_file()):
+        return APPENDIX_I
+    try:
+        own = _family(json.loads(path.read_text(encoding="utf-8")))
+    except (TypeError, ValueError) as error:
+        print(f"Appendix I's extents, because {KEPT_IN} does not hold yours: {error}.")
+        return APPENDIX_I
+    own.setflags(write=False)
+    print(
+        f"Your own {len(own)} motions, from Trajectories. For the report's: extents = APPENDIX_I."
+    )
+    return own
+
+
+def _family(extents_deg) -> np.ndarray:
+    own = shaped("extents_deg", extents_deg, "(motions, 2)")
+    if len(own) < 4:
+        raise ValueError(
+            "extents_deg must be 4 pairs or more, three to train on and the last one to test, got "
+            f"{len(own)}"
+        )
+    for extent in own.flat:
+        number("extents_deg", extent, 0.0, MAX_EXTENT_DEG)
+    return own
+
+
+def _someone_is_there() -> bool:
+    """Whether a reader runs the cells: in a page, or in a notebook that could ask them something.
+
+    What runs notebooks by itself (nbclient, and by it a build or a test) lets none of them ask.
+    """
+    if sys.platform == "emscripten":
+        return True
+    shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)()
+    return bool(getattr(getattr(shell, "kernel", None), "_allow_stdin", False))

@@ -1,14 +1,24 @@
 """The pick-and-place family against its formula, its derivatives and Appendix I."""
 
+import json
 import warnings
+from pathlib import Path
 
+import nbclient
+import nbformat
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
+from jupyter_client.manager import start_new_kernel
 
+from ddlib import trajectories
 from ddlib.trajectories import (
+    APPENDIX_I,
+    KEPT_IN,
     OutsideFamilyWarning,
+    keep,
     pick_and_place,
+    picked,
     random_extents,
     smooth_pick_and_place,
     time_grid,
@@ -117,3 +127,62 @@ def test_a_grid_of_any_duration_holds_the_motion_and_no_sample_more(samples, res
     moving = pick_and_place((10.0, 20.0), t, duration).qdd.any(-1)
     assert moving.sum() == samples - 1  # at 0 s the sine is zero
     np.testing.assert_array_equal(np.flatnonzero(moving), rest + np.arange(1, samples))
+
+
+OWN = [[10.0, 20.5], [30.0, 5.0], [44.0, 44.0], [0.0, 12.0]]
+
+
+@pytest.fixture
+def reader(tmp_path, monkeypatch):
+    """Someone who runs cells in a folder."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(trajectories, "_someone_is_there", lambda: True)
+
+
+def test_extents_that_a_reader_keeps_are_found_until_appendix_i_takes_their_place(reader, capsys):
+    assert picked() is APPENDIX_I and not capsys.readouterr().out
+    keep(OWN)
+    assert "4 motions" in capsys.readouterr().out
+    np.testing.assert_array_equal(picked(), OWN)
+    assert len(capsys.readouterr().out.splitlines()) == 1
+    keep(APPENDIX_I.tolist())
+    assert picked() is APPENDIX_I and not Path(KEPT_IN).exists()
+
+
+@pytest.mark.parametrize("wrong", [OWN[:3], [[46.0, 0.0], *OWN], [[-1.0, 0.0], *OWN], [1.0, 2.0]])
+def test_extents_that_lessons_could_not_use_are_not_kept(reader, wrong):
+    keep(OWN)
+    with pytest.raises(ValueError, match="extents_deg must"):
+        keep(wrong)
+    np.testing.assert_array_equal(picked(), OWN)
+
+
+@pytest.mark.parametrize("text", ["", "[[1, 2", '{"a": 1}', "[[1, 2]]", '[["a", "b"]]', "\udcff"])
+def test_a_file_that_holds_none_is_told(reader, capsys, text):
+    Path(KEPT_IN).write_bytes(text.encode("utf-8", "surrogateescape"))
+    assert picked() is APPENDIX_I
+    assert KEPT_IN in capsys.readouterr().out
+
+
+def test_where_nobody_is_a_file_is_neither_read_nor_written(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path(KEPT_IN).write_text(json.dumps(OWN))
+    keep(APPENDIX_I)
+    assert picked() is APPENDIX_I and Path(KEPT_IN).exists()
+    code = "from ddlib.trajectories import keep, picked\nkeep(picked() / 2)\nprint(len(picked()))"
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(code)])
+    nbclient.NotebookClient(notebook, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    (output,) = notebook.cells[0].outputs  # as a build and a test run it
+    assert output.text.startswith("Not kept") and output.text.endswith("\n6\n")
+    assert json.loads(Path(KEPT_IN).read_text()) == OWN
+    manager, client = start_new_kernel(cwd=str(tmp_path))
+    try:
+        told = []
+        ask = {"allow_stdin": True, "output_hook": lambda message: told.append(message["content"])}
+        client.execute_interactive(code, **ask, timeout=60)  # as JupyterLab asks for it
+    finally:
+        client.stop_channels()
+        manager.shutdown_kernel(now=True)
+    text = "".join(content.get("text", "") for content in told)
+    assert "Your own 4 motions" in text and "Kept" in text and text.endswith("\n4\n")
+    np.testing.assert_allclose(json.loads(Path(KEPT_IN).read_text()), np.array(OWN) / 2)

@@ -138,6 +138,7 @@ def meant() -> dict:
         "proportional_limit": dict(inertia=1.0, viscous=0.5),
         "noise_gain": dict(weights=FILTER), "EstimatedVelocity": dict(weights=FILTER),
         "Feedforward": dict(model=ARM), "feedforward_system": dict(model=ARM),
+        "keep": dict(extents_deg=trajectories.APPENDIX_I),
         "record": dict(rest=0.2, control_step=0.01, log_step=0.02, duration=1.0),
         "follow": dict(log_every=2), "rms": dict(x=m["torque"], axis=0),
         "predicted_response": dict(period=0.01, seconds=1.0),

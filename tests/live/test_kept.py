@@ -4,6 +4,9 @@ import json
 
 import live_pages
 import pytest
+from live import packages
+
+from ddlib.trajectories import KEPT_IN
 
 pytestmark = pytest.mark.browser
 ONE, TWO = {"id": "one", "source": "a = 1"}, {"id": "two", "source": "b = 2"}
@@ -145,3 +148,38 @@ def test_another_book_of_the_server_is_left_alone(reader):
     tab.once("dialog", lambda dialog: dialog.accept())
     tab.get_by_role("button", name="Erase").click()
     assert tab.evaluate("() => Object.keys(localStorage)") == ["live:/other/a.html"]
+
+
+EXTENTS = "[[10.0, 20.0], [30.0, 5.0], [44.0, 44.0], [0.0, 12.0]]\n"
+PICKING = """window.Worker = class {
+  async postMessage(message) {
+    if (message.start) window.begun = message.picked;
+    const of = { run: message.run, done: true, ok: true, seconds: 0 };
+    const all = message.start ? [{ ready: true }] : message.run ? [{ picked: EXTENTS }, of] : [];
+    for (const data of all) this.onmessage({ data });
+  }
+  terminate() {}
+}"""
+
+
+def test_extents_that_a_lesson_kept_come_back_in_the_next(browser):
+    context = browser.new_context()
+    context.add_init_script(PICKING.replace("EXTENTS", json.dumps(EXTENTS)))
+    tab = context.new_page()
+    show(tab, name="a.html")
+    assert tab.evaluate("() => window.begun") == ""
+    show(tab, name="b.html")
+    assert tab.evaluate("() => window.begun") == EXTENTS
+    content = saved(tab)
+    assert content["extents"] == EXTENTS
+    assert len(take(tab, content | {"extents": "[]"}, accept=False)[0]) == 1
+    assert saved(tab)["extents"] == EXTENTS
+    tab.once("dialog", lambda dialog: dialog.accept())
+    tab.get_by_role("button", name="Erase").click()
+    assert not saved(tab)["extents"]
+    context.close()
+
+
+def test_worker_and_notebook_keep_them_in_the_same_file():
+    worker = (packages.PAGE / "worker.mjs").read_text(encoding="utf-8")
+    assert f'"/book/{KEPT_IN}"' in worker

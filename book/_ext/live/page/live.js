@@ -9,6 +9,7 @@
   const MINE = KEYS + location.pathname;
   const FOLDER = MINE.slice(0, MINE.lastIndexOf("/") + 1); // the book's: a server may have others
   const REACT = "live-react";
+  const EXTENTS = `live-extents:${FOLDER.slice(KEYS.length)}`;
   const FORMAT = "direct-drive-work-1";
 
   const make = (tag, attributes = {}, ...inside) => {
@@ -58,6 +59,17 @@
     localStorage.length;
   } catch {
     blocked = true;
+  }
+
+  // Extents that the reader picked in one lesson, for those that follow: the text of a file.
+  let extents = read(EXTENTS);
+  const picked = () => {
+    const kept = blocked ? extents : read(EXTENTS);
+    return typeof kept === "string" ? kept : "";
+  };
+  function pick(text) {
+    extents = text;
+    write(EXTENTS, text || null);
   }
 
   // Another tab may have written since: only what was changed in this one is written over it. What
@@ -123,8 +135,8 @@
     for (const cell of asked)
       if (cell.solved) cell.solved.textContent = mine.solved.includes(cell.id) ? "Solved" : "";
   }
-  const picked = make("input", { type: "file", accept: ".json,application/json", hidden: "" });
-  picked.addEventListener("change", () => takeIn(picked.files[0]));
+  const chosen = make("input", { type: "file", accept: ".json,application/json", hidden: "" });
+  chosen.addEventListener("change", () => takeIn(chosen.files[0]));
   own.append(
     make(
       "p",
@@ -132,9 +144,9 @@
       "Your changes and the exercises that you solved stay on this device. Nothing is sent.",
     ),
     button("Save as a file", "Save as a file: your work on all pages of the book", () => takeOut()),
-    button("Open a file", "Open a file with your work", () => picked.click()),
+    button("Open a file", "Open a file with your work", () => chosen.click()),
     button("Erase", "Erase your work on all pages of the book", () => erase()),
-    picked,
+    chosen,
     heardOf,
   );
   const keptNothing =
@@ -154,7 +166,7 @@
 
   function takeOut() {
     remember();
-    const content = JSON.stringify({ format: FORMAT, pages: pages() }, null, 1);
+    const content = JSON.stringify({ format: FORMAT, pages: pages(), extents: picked() }, null, 1);
     const address = URL.createObjectURL(new Blob([content], { type: "application/json" }));
     make("a", { href: address, download: "direct-drive-work.json" }).click();
     setTimeout(() => URL.revokeObjectURL(address), 10_000);
@@ -162,7 +174,7 @@
   }
 
   async function takeIn(file) {
-    picked.value = "";
+    chosen.value = "";
     let content;
     try {
       content = JSON.parse(await file.text());
@@ -183,14 +195,23 @@
     const differ = both.flatMap(({ own, other }) =>
       Object.keys(other.changes).filter((id) => own.changes[id] && own.changes[id][1] !== other.changes[id][1]),
     ); // prettier-ignore
-    const ask = `The file has other code for ${many(differ.length, "cell")} that you changed here. Take it in place of yours?`;
-    const over = !differ.length || confirm(ask);
+    const theirs = typeof content.extents === "string" ? content.extents : "";
+    const others = [
+      differ.length && `other code for ${many(differ.length, "cell")} that you changed here`,
+      theirs && picked() && theirs !== picked() && "other motions than you picked",
+    ].filter(Boolean);
+    const ask = `The file has ${others.join(", and ")}. Take it in place of yours?`;
+    const over = !others.length || confirm(ask);
     for (const { page, own, other } of both) {
       const [first, last] = over ? [own, other] : [other, own];
       const changes = { ...first.changes, ...last.changes };
       const all = { changes, solved: [...new Set([...own.solved, ...other.solved])] };
       if (page === here) mine = all;
       write(FOLDER + page, all);
+    }
+    if (theirs && (over || !picked())) {
+      pick(theirs);
+      worker?.postMessage({ picked: theirs });
     }
     for (const cell of cells) if (cell.area) setText(cell, keptText(cell));
     remember();
@@ -207,6 +228,8 @@
       blocked = true;
     }
     mine = work();
+    pick("");
+    worker?.postMessage({ picked: "" });
     write(REACT, null);
     react.checked = false;
     if (cells.some((c) => c.area)) asBuilt(true);
@@ -670,7 +693,8 @@
       if (mine === worker) heard({ failed: event.message || "its files are not on this site" });
     };
     interrupts = isolated ? new Uint8Array(new SharedArrayBuffer(1)) : undefined;
-    worker.postMessage({ start: data.map((name) => `data/${name}`), interrupts });
+    const files = data.map((name) => `data/${name}`);
+    worker.postMessage({ start: files, interrupts, picked: picked() });
   }
 
   function advance(bytes) {
@@ -696,6 +720,7 @@
 
   function heard(message) {
     if (message.form) inBoth(message);
+    else if (message.picked !== undefined) pick(message.picked);
     else if (message.widget) withHost(() => host.heard(message.widget, message.buffers));
     else if (message.bytes) {
       progress.hidden = ready && !running;

@@ -30,6 +30,18 @@ async function file(path) {
   return answer.arrayBuffer();
 }
 
+// Extents that the reader kept lie in a file, as beside a notebook (ddlib/trajectories.py); the
+// page has its text from lesson to lesson.
+const KEPT_IN = "/book/picked-extents.json";
+let picked = "";
+const pickedNow = () =>
+  python.FS.analyzePath(KEPT_IN).exists ? python.FS.readFile(KEPT_IN, { encoding: "utf8" }) : "";
+function pick(text = "") {
+  picked = text;
+  if (text) python.FS.writeFile(KEPT_IN, text);
+  else if (pickedNow()) python.FS.unlink(KEPT_IN);
+}
+
 async function start(data) {
   const lock = here("pyodide/pyodide-lock.json");
   const [found, ...files] = await Promise.all([lock, ...MODULES, ...data].map(file));
@@ -102,7 +114,8 @@ self.onmessage = ({ data }) => {
   else last = last.then(() => act(data));
 };
 
-async function act({ start: data, interrupts, run, source, above, how, widget, buffers, forms }) {
+async function act(message) {
+  const { start: data, interrupts, run, source, above, how, widget, buffers, forms } = message;
   try {
     if (forms) return kernel.forms((cell, number, text) => tell({ form: cell, number, text }));
     if (widget) {
@@ -111,9 +124,11 @@ async function act({ start: data, interrupts, run, source, above, how, widget, b
     }
     if (data) {
       await start(data);
+      pick(message.picked);
       if (interrupts) python.setInterruptBuffer(interrupts);
       return tell({ ready: true });
     }
+    if (!run) return pick(message.picked);
     wanted = false;
     tell({ began: run });
     const began = performance.now();
@@ -122,6 +137,7 @@ async function act({ start: data, interrupts, run, source, above, how, widget, b
       above: python.toPy(above ?? null),
       ...how,
     });
+    if (pickedNow() !== picked) tell({ picked: (picked = pickedNow()) });
     tell({ run, done: true, ok, seconds: (performance.now() - began) / 1000 });
   } catch (error) {
     tell({ failed: `${error.message ?? error}` });
