@@ -38,7 +38,7 @@ SCROLLED = "pst-scrollable-table-container"
 CSS_DATA = re.compile(r"""url\((?:"(data:(?:[^"\\]|\\.)*)"|(data:[^)]*))\)""")
 # Rules of single icons: `.fa-sun:before{content:"\\f185"}`, 1,900 of them.
 ICON_RULES = re.compile(r"(?<=[};])(?:\.fa-[\w.-]+(?::{1,2}\w+)?,?)+\{[^{}]*\}")
-ICON_FONTS = re.compile(r"@font-face\s*\{[^}]*\}")  # the theme has no others
+ICON_FONTS = re.compile(r"@font-face\s*\{[^}]*Font ?Awesome[^}]*\}")
 ICON_LETTER = re.compile(r"""(["'])(?:\\[ef][0-9a-f]{3}|[\ue000-\uf8ff])\1""", re.IGNORECASE)
 
 
@@ -134,14 +134,15 @@ class Page(Rewriter):
         elif "search-button-field" in classes:  # its words say what it is
             kept = {key: own[key] for key in own if key not in ("title", "aria-label")}
             self.change(self.start, self.end, tag(name, kept))
+        elif own.get("id") == "pst-primary-sidebar":  # closed until it is asked for
+            closed = {"class": f"{own['class']} pst-sidebar-hidden", "role": "complementary"}
+            self.change(self.start, self.end, tag(name, {**own, **closed}))
         elif role := self.role(own, classes):
             self.change(self.start, self.end, tag(name, {**own, "role": role}))
 
     @staticmethod
     def role(own: dict[str, str], classes: list[str]) -> str:
         """What assistive technology should take an element for; empty if it is as it should be."""
-        if own.get("id") == "pst-primary-sidebar":
-            return "complementary"
         if own.get("role") == "doc-biblioentry":  # deprecated
             return "listitem"
         return "presentation" if "indextable" in classes else ""
