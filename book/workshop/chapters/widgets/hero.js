@@ -15,7 +15,7 @@ const SWING = 1400; // ms in which a balance settles
 
 // Where every piece stands, for a width. Beside each other where there is room, else in two columns.
 function placesIn(wide) {
-  if (wide >= 860) {
+  if (wide >= 700) {
     const s = Math.min(1.15, wide / 1120);
     const [x, y] = [(v) => s * v, (v) => s * v];
     return {
@@ -30,18 +30,18 @@ function placesIn(wide) {
       button: [x(962) - 70 * s, y(222), 140 * s, 46 * s], under: [x(962), y(289)], bait: null,
     };
   }
-  const s = Math.min(1.7, wide / 358);
+  const s = Math.min(1.3, wide / 358);
   const x = (v) => s * v;
   return {
-    narrow: true, s, wide, high: x(590),
-    base: [x(46), x(176)], metre: x(172), thick: x(15), arcs: [[38, 50, 60], [28, 38, 48]].map((r) => r.map(x)),
-    torque: [x(232), x(134)], says: [x(232), x(160)],
-    elbow: { from: x(240), to: x(346), y: x(66), name: [x(234), x(52)] },
-    rows: { from: x(50), to: x(198), A: x(262), B: x(460), tall: x(34), badge: x(16), dot: x(3.1) },
-    chord: { from: x(60), to: x(188), y: x(355), name: [x(60), x(344)] },
-    note: [0, x(505)],
-    scales: { x: x(284), half: x(46), A: x(210), B: x(376), post: x(92), rope: x(50), verdict: x(116) },
-    button: [0, x(540), wide, x(46)], under: [0, x(524)], bait: [x(232), x(160)],
+    narrow: true, s, wide: Math.min(wide, x(358)), high: x(522),
+    base: [x(46), x(168)], metre: x(172), thick: x(15), arcs: [[38, 50, 60], [28, 38, 48]].map((r) => r.map(x)),
+    torque: [x(232), x(124)], says: [x(232), x(150)],
+    elbow: { from: x(240), to: x(346), y: x(52), name: [x(234), x(38)] },
+    rows: { from: x(50), to: x(198), A: x(252), B: x(450), tall: x(34), badge: x(16), dot: x(3.1) },
+    chord: { from: x(60), to: x(188), y: x(345), name: [x(60), x(334)] },
+    note: [0, x(495)],
+    scales: { x: x(284), half: x(46), A: x(200), B: x(366), post: x(92), rope: x(50), verdict: x(116) },
+    button: null, under: [0, x(514)], bait: [x(232), x(150)],
   };
 }
 
@@ -118,7 +118,7 @@ function build({ model, el }) {
     const g = group("scale", ...Object.values(parts), ...pans.flatMap((p) => [p.ropes, p.dish, p.block.g, p.name]), verdict);
     return { ...parts, pans, verdict, g };
   });
-  const under = text("note", "On a balance: all rows of a network.");
+  const under = text("note", "Weighed: all rows of each network.");
   const svg = make(
     "svg",
     { class: "stage", role: "group", "aria-label": "An arm, the windows of its joints, two rows of weights and two balances" },
@@ -135,7 +135,7 @@ function build({ model, el }) {
   const point = (x, y) => `${short(x)} ${short(y)}`;
   const number = (x) => x.toFixed(1).replace(/^-0\.0$/, "0.0").replace("-", "−");
   function layout() {
-    at = placesIn(el.clientWidth - 8 || 1120);
+    at = placesIn(el.clientWidth - 8 || 1120); // without the padding
     const { s, base, chord, elbow, rows: place } = at;
     put(svg, { width: at.wide, height: at.high, viewBox: `0 0 ${at.wide} ${at.high}` });
     svg.style.setProperty("--s", s);
@@ -177,8 +177,8 @@ function build({ model, el }) {
       put(words, { x: left + 38, y: middle });
     });
     write(keys[1][1], at.narrow ? "A and B" : "what A and B say it is");
-    const [left, top, wide, high] = at.button;
-    Object.assign(weigh.style, { left: `${left}px`, top: `${top}px`, width: `${wide}px`, height: `${high}px` });
+    const box = at.button?.map((v) => `${v}px`) ?? ["", "", "", ""]; // else below the words
+    ["left", "top", "width", "height"].forEach((side, k) => (weigh.style[side] = box[k]));
     put(under, { x: at.under[0], y: at.under[1], "text-anchor": at.narrow ? "start" : "middle" });
   }
 
@@ -195,12 +195,12 @@ function build({ model, el }) {
 
   // Torques as arcs, from the direction of the link
   function arc({ path: curve, head }, [x, y], radius, from, torque, most) {
-    const turn = Math.max(-2.9, Math.min(2.9, (1.7 * torque) / most));
+    const turn = Math.max(-2.4, Math.min(2.4, (1.6 * torque) / most));
     const tip = 8 * Math.min(1.1, at.s) * (head.classList.contains("truth") ? 1.25 : 1);
     const on = (angle, r = radius) => [x + r * Math.cos(angle), y - r * Math.sin(angle)];
     const small = Math.abs(turn) * radius < 2;
     const end = from + turn - (Math.sign(turn) * Math.min(Math.abs(turn), 0.8 * tip / radius));
-    put(curve, { d: small ? "M0 0" : `M${point(...on(from))}A${short(radius)} ${short(radius)} 0 ${Math.abs(turn) > Math.PI ? 1 : 0} ${turn > 0 ? 0 : 1} ${point(...on(end))}` });
+    put(curve, { d: small ? "M0 0" : `M${point(...on(from))}A${short(radius)} ${short(radius)} 0 0 ${turn > 0 ? 0 : 1} ${point(...on(end))}` });
     const reach = from + turn + (Math.sign(turn) * 0.6 * tip) / radius;
     put(head, { d: small ? "M0 0" : `M${point(...on(reach))}L${point(...on(end, radius + 0.75 * tip))}L${point(...on(end, radius - 0.75 * tip))}Z` });
     return on(reach + (Math.sign(turn || 1) * 13 * Math.min(1, at.s)) / radius, radius);
@@ -249,8 +249,8 @@ function build({ model, el }) {
     put(chord, { x1: from, x2: to, y1: y, y2: y });
     put(area, { d: `M${places.map((p) => point(...p)).join("L")}Z` });
     [...beads.children].forEach((bead, k) => put(bead, { cx: short(places[k][0]), cy: short(places[k][1]) }));
-    if (j) return;
     const down = bent[half] < 0;
+    if (j) return put(strands[1].name, { y: y + (down ? -16 : 28) });
     put(bend, { x: (from + to) / 2, y: y + (down ? -9 : 20) });
     write(bend, `bend ${number(most)}°`);
     if (at.narrow) write(strands[0].name, `shoulder, bend ${number(most)}°`);
@@ -299,7 +299,8 @@ function build({ model, el }) {
         const value = side ? weight : arm;
         const heavy = value > 0.1 * arm;
         const drop = side && weighed ? (1 - load) * -26 * s : 0;
-        const [bw, bh] = at.narrow ? [23 * s, 31 * s] : [29 * s, 38 * s];
+        const size = Math.max(0.85, s); // of what holds words
+        const [bw, bh] = at.narrow ? [23 * s, 31 * s] : [29 * size, 38 * size];
         const foot = floor + drop;
         put(block.shape, { d: heavy && (!side || weighed) ? `M${point(left - bw, foot)}L${point(left - 0.86 * bw, foot - bh + 4)}Q${point(left - 0.84 * bw, foot - bh)} ${point(left - 0.72 * bw, foot - bh)}H${short(left - 0.25 * bw)}V${short(foot - bh - 4 * s)}h${short(-4 * s)}v${short(-7 * s)}H${short(left + 0.25 * bw + 4 * s)}v${short(7 * s)}h${short(-4 * s)}V${short(foot - bh)}H${short(left + 0.72 * bw)}Q${point(left + 0.84 * bw, foot - bh)} ${point(left + 0.86 * bw, foot - bh + 4)}L${point(left + bw, foot)}Z` : "M0 0" });
         block.g.classList.toggle("bare", Boolean(side) && (!weighed || !heavy));
@@ -323,12 +324,15 @@ function build({ model, el }) {
   function tell() {
     const guess = get("guess");
     if (!get("weighed")) {
-      write(said, guess ? `You say ${guess}. Weigh them.` : "Which row has met this arm? Pick A or B. Then weigh.");
-      return;
+      return said.replaceChildren(guess ? `You say ${guess}. Now weigh.` : "Pick A or B, then weigh.");
     }
-    const verdict = guess && (guess === right ? "You were right: " : "Fooled: ");
-    const weights = networks.map(({ name, weight }) => `${name} weighs ${kg(weight)}`).join(", ");
-    write(said, `${verdict}${weights}, the arm ${kg(arm)}. Now throw the arm and watch the dashed arcs.`);
+    const weights = networks.map(({ name, learnt, weight }) => `${name} learnt ${learnt} and weighs ${kg(weight)}`);
+    const verdict = guess && (guess === right ? "You were right. " : "Fooled. ");
+    said.replaceChildren(
+      verdict,
+      make("span", { class: "spoken" }, `${weights.join(", ")}, the arm weighs ${kg(arm)}. `),
+      "Now throw the arm and watch the dashed arcs.",
+    );
   }
   function show() {
     const [guess, weighed] = [get("guess"), get("weighed")];
@@ -503,7 +507,7 @@ function build({ model, el }) {
     set({ weighed: text === "true" });
   });
   const spoken = make("p", { class: "spoken" }, spec.spoken);
-  el.replaceChildren(spoken, make("div", { class: "board" }, svg, weigh), said, frame.el);
+  el.replaceChildren(spoken, svg, said, weigh, frame.el);
   model.on("change:guess", show);
   model.on("change:weighed", swing);
   const sizes = new ResizeObserver(() => {

@@ -191,10 +191,10 @@ def _draw_arm(axis, q, torque):
     for place, joint, size in zip(places, ("shoulder", "elbow", "elbow"), (19, 16, 14)):
         axis.plot(*place, "o", ms=size, mfc="white", mec=TONES[joint], mew=4)
     shoulder, elbow = (places[1:] + places[:-1]) / 2
-    look = {"ls": ":", "lw": 1.4}
-    bowed = shoulder, shoulder + (100, 30), (350, 258), (472, 258)
-    _thread(axis, bowed, color=TONES["shoulder"], **look)
-    _thread(axis, (elbow, elbow - (0, 60), (275, 150), (275, 86)), color=TONES["elbow"], **look)
+    bowed = shoulder, np.add(shoulder, (100, 30)), (350, 258), (472, 258)
+    _thread(axis, bowed, color=TONES["shoulder"], ls=":", lw=1.4)
+    rising = elbow, np.subtract(elbow, (0, 60)), (275, 150), (275, 86)
+    _thread(axis, rising, color=TONES["elbow"], ls=":", lw=1.4)
     angles = turned[0] + np.linspace(0, 1.7 * torque / 62, 40)
     arc = base[:, None] + 62 * np.stack([np.cos(angles), -np.sin(angles)])
     axis.plot(*arc[:, :-4], color=INK, lw=3.5)
@@ -243,7 +243,7 @@ def _draw_row(axis, twin, level, beads):
 
 def _draw_balance(axis, name, arm, top):
     post = np.array([(958, 0), (954, 128), (926, 138), (998, 138), (970, 128), (966, 0)])
-    axis.add_patch(Polygon(post + (0, top), color=FAINT, lw=0))
+    axis.add_patch(Polygon(np.add(post, (0, top)), color=FAINT, lw=0))
     axis.plot([858, 1066], [top, top], color=INK, lw=3.5, solid_capstyle="round")
     axis.plot(962, top, "o", ms=10, mfc="white", mec=INK, mew=2.2)
     floor = top + 58
@@ -251,7 +251,7 @@ def _draw_balance(axis, name, arm, top):
         axis.plot([x - 32, x, x + 32], [floor, top, floor], color=FAINT, lw=1.1)
         axis.plot([x - 40, x + 40], [floor, floor], color=FAINT, lw=2.5)
     block = np.array([(829, 0), (833, -38), (883, -38), (887, 0)])
-    axis.add_patch(Polygon(block + (0, floor), color=INK, lw=0, zorder=3))
+    axis.add_patch(Polygon(np.add(block, (0, floor)), color=INK, lw=0, zorder=3))
     axis.add_patch(Circle((858, floor - 42), 7, color=INK, lw=0, zorder=3))
     look = {"ha": "center", "fontweight": "bold"}
     axis.text(858, floor - 19, f"{arm:.1f}", color="white", fontsize=12, zorder=4, **look)

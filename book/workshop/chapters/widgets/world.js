@@ -83,6 +83,6 @@ export function worldOf(spec) {
   // Whether nothing moves and nothing has moved for a while.
   world.still = () =>
     world.mode === "free" &&
-    world.samples.slice(-40).every(({ v, tau }) => [...v, ...tau].every((x) => Math.abs(x) < 4e-3));
+    world.samples.slice(-25).every(({ v, tau }) => [...v, ...tau].every((x) => Math.abs(x) < 0.02));
   return world;
 }
