@@ -78,6 +78,7 @@ function build({ model, el }) {
   const rope = line("rope");
   const handle = group("hand-handle", make("circle", { class: "room" }), make("circle", { class: "ring" }));
   put(handle, { tabindex: 0, role: "application", "aria-roledescription": "handle" });
+  handle.dataset.runs = ""; // for benchmarks
   handle.setAttribute("aria-label", "The arm's hand: arrow keys pull it for as long as they are pressed");
   const bait = text("bait", "drag or throw");
   const arcs = JOINTS.map(() => ["truth", ...networks.map(() => "told")].map((kind) => ({
@@ -156,7 +157,7 @@ function build({ model, el }) {
       for (const bead of beads.children) put(bead, { r: (j ? 0.78 : 1) * (at.narrow ? 3.4 : 5 * s) });
     });
     const step = (place.to - place.from) / (width - 1);
-    rows.forEach(({ name, stems, zero, badge, most }, k) => {
+    rows.forEach(({ name, stems, threads, zero, badge, most }, k) => {
       const level = place[name];
       put(zero, { x1: place.from - 8 * s, x2: place.to + 8 * s, y1: level, y2: level });
       stems.forEach(([stem, dot], i) => {
@@ -164,6 +165,10 @@ function build({ model, el }) {
         const top = short(level - (place.tall * networks[k].row[i]) / most);
         put(stem, { x1: left, x2: left, y1: level, y2: top });
         put(dot, { cx: left, cy: top, r: place.dot });
+        const thick = (Math.abs(networks[k].row[i]) / most) * 7 * Math.min(1, s);
+        const [outer, inner] = threads[i];
+        outer.style.strokeWidth = short(inner ? thick + 1.6 : Math.max(0.5, thick));
+        if (inner) inner.style.strokeWidth = short(thick);
       });
       badge.setAttribute("transform", `translate(${place.badge} ${level})`);
       [24, 20, 16].forEach((r, i) => put(badge.children[i], { r: at.narrow ? 0.82 * r : r * s }));
@@ -255,19 +260,14 @@ function build({ model, el }) {
     write(bend, `bend ${number(most)}°`);
     if (at.narrow) write(strands[0].name, `shoulder, bend ${number(most)}°`);
     else write(strands[0].name, "shoulder, 0.2 s");
-    rows.forEach(({ name, threads, most: largest }, k) => {
+    rows.forEach(({ name, threads }, k) => {
       const level = at.rows[name];
       const step = (at.rows.to - at.rows.from) / (width - 1);
       places.forEach(([left, top], i) => {
         const [x2, y2] = [at.rows.from + i * step, level + (k ? -1 : 1) * 1.5];
-        const thick = (Math.abs(networks[k].row[i]) / largest) * 7 * Math.min(1, at.s);
         const middle = (top + y2) / 2;
         const d = `M${point(left, top)}C${point(left, middle)} ${point(x2, middle)} ${point(x2, y2)}`;
-        const outer = threads[i].length > 1 ? thick + 1.6 : Math.max(0.5, thick);
-        threads[i].forEach((thread, inner) => {
-          put(thread, { d });
-          thread.style.strokeWidth = short(inner ? thick : outer);
-        });
+        for (const thread of threads[i]) put(thread, { d });
       });
     });
   }

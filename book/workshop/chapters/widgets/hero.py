@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path as FilePath
+from pathlib import Path
 
 import numpy as np
 import traitlets as t
 from matplotlib.patches import Circle, PathPatch, Polygon
-from matplotlib.path import Path
+from matplotlib.path import Path as Curve
 
 from ddlib.figures import FAINT, INK, TONES, Illustration, illustrate
 from ddlib.learning import Scaler, TorqueModel, Weights
@@ -25,7 +25,7 @@ from ddlib.widgets.still import START, encoded
 from workshop import BOOK
 from workshop.report import results
 
-_HERE = FilePath(__file__).parent
+_HERE = Path(__file__).parent
 
 _REST = 0.4  # s before the motion begins
 _SHOWN = 150  # samples of the motion in which the arm stops where the shoulder's torque is largest
@@ -218,8 +218,8 @@ def _draw_window(axis, joint, path, place, name, scale):
 
 
 def _thread(axis, along, **look):
-    codes = [Path.MOVETO, *[Path.CURVE4] * 3]
-    axis.add_patch(PathPatch(Path(along, codes), fill=False, capstyle="butt", **look))
+    codes = [Curve.MOVETO, *[Curve.CURVE4] * 3]
+    axis.add_patch(PathPatch(Curve(along, codes), fill=False, capstyle="butt", **look))
 
 
 def _draw_row(axis, twin, level, beads):
