@@ -186,6 +186,7 @@ firefox: $(TESTED)  ## the page tests in Firefox, on the pages as they were buil
 
 reproduce: $(READY)  ## measure the paper's claims anew (slow), into book/results/
 	$(WORKSHOP) -m workshop.report.reproduce
+	$(WORKSHOP) -m workshop.chapters.widgets.hero
 
 ONLY ?= ddlib.dynamics.*
 mutants: $(TESTED)  ## which mistakes would the tests notice? ONLY=ddlib.control.* names modules

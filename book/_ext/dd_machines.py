@@ -36,7 +36,7 @@ from the run that made these pages.
 ## Start
 
 - [Claims]({claims}): all verdicts as JSON
-- [The first page]({texts}/index.md): the question, and the arm to throw
+- [The first page]({texts}/index.md): two rows of weights, and an arm to throw
 """
 
 

@@ -49,6 +49,7 @@ def test_targets_run_in_their_folder_and_find_the_workshop(clone, tmp_path):
     assert path == book and "--ServerApp.root_dir=_build/lab" in lab
     *_, (path, _, lab) = calls("lab", "SOURCES=1")
     assert path == book and "root_dir" not in lab
-    assert calls("reproduce") == [(book, "", "-m workshop.report.reproduce")]
+    modules = "report.reproduce", "chapters.widgets.hero"
+    assert calls("reproduce") == [(book, "", f"-m workshop.{module}") for module in modules]
     assert {folder for _, folder, _ in calls("test")} == {measured}
     assert len(calls("check")) > 4

@@ -56,7 +56,6 @@ def parts(tmp_path, monkeypatch):
     monkeypatch.setattr(reproduce, "places", lambda: dict.fromkeys(ran.codes, ("module", "name")))
     monkeypatch.setattr(reproduce, "run_study", lambda name: ran.studies[name]())
     monkeypatch.setattr(reproduce, "code_hash", lambda name: ran.codes[name])
-    monkeypatch.setattr(reproduce, "_picture", lambda: None)
     return ran
 
 

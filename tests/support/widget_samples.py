@@ -135,9 +135,9 @@ def _arguments() -> dict[str, dict]:
         "FilterBuilder": {"unit": np.arange(-10, 11.0) ** 2},
         "FilterExplorer": {"models": models, "members": (0, 1), "step": 0.01},
         "FoldBench": {"rows": {"up": rows[0, 0]}, "step": 0.01, "motion": np.zeros((60, 3))},
+        "Hero": {"pair": [_twin("A", single[7], 6.0), _twin("B", single[7], 0.0)], "arm": 6.0},
         "HiddenTorque": {"recording": last},
         "SlidingWindow": {"models": single, "recording": last},
-        "ThrownArm": {"model": single[7], "code": "motion = {motion}"},
         "TrainingPlayer": {
             "epochs": [0, 10, 20], "model": network(7, 1, 2, 3), "recording": recording,
             "member": 1,
@@ -156,6 +156,12 @@ def _arguments() -> dict[str, dict]:
             "inertia": lambda load: load * np.eye(2),
         },
     }  # fmt: skip
+
+
+def _twin(name, model, inertia):
+    from workshop.chapters.widgets.hero import Twin
+
+    return Twin(name, "something", model, inertia)
 
 
 def _guess(own, other):

@@ -67,13 +67,10 @@ def test_the_state_is_a_link_and_reset_is_the_start(page_with, kind):
     url, start = page.url, page.evaluate(SHOWN)
     link = by_keyboard(page)
     changed = page.evaluate(SHOWN)
-    # ThrownArm has a bar of its own, which keeps the book's first page light: the address does not
-    # follow its state, and Reset lays its arm straight without going back to the first motion.
-    if kind.__name__ != "ThrownArm":
-        page.wait_for_function(ADDRESS, arg=link)
-        page.get_by_role("button", name="Reset to the start").click()
-        page.wait_for_function(ADDRESS, arg=url)
-        page.wait_for_function(SAME, arg=start)
+    page.wait_for_function(ADDRESS, arg=link)
+    page.get_by_role("button", name="Reset to the start").click()
+    page.wait_for_function(ADDRESS, arg=url)
+    page.wait_for_function(SAME, arg=start)
     page.goto(link)
     page.wait_for_function(SAME, arg=changed)
     assert copied(page, "Link") == link

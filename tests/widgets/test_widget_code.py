@@ -23,7 +23,6 @@ STATES = {
         {"shoulder_deg": 39.5, "elbow_deg": 14.4},
         "11 ",
     ),
-    "CODE": ("index", {"motion": 1}, "[["),
 }
 
 

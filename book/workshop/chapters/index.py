@@ -1,4 +1,4 @@
-"""The landing page: ten small pictures of one motion, one window and one row of one network."""
+"""The landing page: its hero; ten pictures of one motion, one window, one row of one network."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from ddlib.setups import JOINT_DAMPING, predict
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote
 from workshop.chapters import planted
+from workshop.chapters.widgets.hero import Hero, twins
 from workshop.report import committed, results
 from workshop.report.evidence import cards
 from workshop.report.evidence.statements import resampled, stated
@@ -25,6 +26,11 @@ from workshop.report.measures import filter_trial as trial
 WIDTH = 21
 _SHOWN = 150  # samples of the motion
 _TONE = SimpleNamespace(**figures.TONES)
+
+
+def hero() -> Hero:
+    """What the page begins with."""
+    return Hero(twins(), results.read("twins")["arm"])
 
 
 def both(weights: Weights) -> tuple[int, int]:
@@ -41,7 +47,7 @@ def _network():
 
 @cache
 def carried_row() -> np.ndarray:
-    """The row that is carried through all pictures; `ThrownArm` opens with it."""
+    """The row that is carried through all pictures."""
     return _network().weights.hidden_weights[both(_network().weights)]
 
 
@@ -243,7 +249,9 @@ def station(lesson: str) -> figures.Illustration:
 
 
 def _quoted() -> None:
-    """The numbers of *What comes out*, and what its comparisons rest on."""
+    """The numbers of the page, and what its comparisons rest on."""
+    quote("twins-pairs", results.read("twins")["pairs"])
+    quote("twins-least", results.read("twins")["alike"]["least"])
     tried = cards.of_kind("system")  # as the page *Verdict* counts
     quote("index-sentences", len(tried))
     quote("index-reproduced", cards.tally(tried)["reproduced"])

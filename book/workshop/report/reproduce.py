@@ -18,22 +18,8 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 
 from tqdm.auto import tqdm
 
-from ddlib import figures
-from ddlib.analysis import purest, upright
-from ddlib.simulation import LOG_STEP
 from workshop.report import results
 from workshop.report.code_hash import code_hash, places, run_study
-
-
-def _picture() -> None:
-    """The README's picture: two filters found in the networks of window 21."""
-    networks = results.networks(21).weights
-    filters = {
-        f"{name} filter": upright(purest(networks.hidden_weights, name))
-        for name in ("velocity", "acceleration")
-    }
-    target = results.FOLDER.parent / "_static" / "readme.svg"
-    figures.decomposed(filters, LOG_STEP).save(target)
 
 
 def _make(name: str, code: str) -> None:
@@ -116,8 +102,6 @@ def main(arguments=None) -> None:
         made_by = {**results.stamp(time.monotonic() - started), "jobs": options.jobs}
         made_by["parts"] = len(known)
         results.write_json(results.FOLDER / "reproduce.json", {"made by": made_by})
-    if not options.parts:
-        _picture()
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ plain dictionary. ``python -m workshop.report.reproduce NAME`` runs one.
 - ``nulls``, ``harmonics``: unrelated torques, other starts and ends; other motions
 - ``targets``: velocity filters by what is learnt, and by the size of the initial weights
 - ``planted``: what is read, and what a knob does, where it is known what was learnt
+- ``twins``: two rows of one shape, one of the arm and one of a spring
 - ``span``: learning curves along the directions of the windows
 - ``states``: section 6
 - ``page``: networks that readers train in the pages
