@@ -65,13 +65,13 @@ _OWN_DASH = {"elbow": 1, "network": 1, "constant": 2, "odd": 1, "wanted": 3, "be
 _WORDS = {
     "shoulder": r"shoulder",
     "elbow": r"elbow",
-    "measured": r"measured|recorded|reading|true|truth|real|th(is|e) arm",
-    "network": r"networks?",
+    "measured": r"measured|recorded|reading|real|th(is|e) arm",
+    "network": r"networks?|weights|gradient",
     "window": r"window(?! (of )?\d)",
     "constant": r"constant",
     "even": r"even|acceleration|parabola|inertial|coupling",
     "odd": r"odd|velocity|line|viscous|centrifugal|coriolis",
-    "wanted": r"wanted|reference|planned|ideal|target",
+    "wanted": r"wanted|reference|planned|ideal|target|true|truth",
     "before": r"before|untrained",
 }
 _NAMED = re.compile("|".join(rf"(?P<{role}>\b({words})\b)" for role, words in _WORDS.items()), re.I)
@@ -94,15 +94,20 @@ class Look:
         """What matplotlib's `plot` takes of a line."""
         return {"color": self.colour, "ls": DASHES[self.dash]}
 
+    @property
+    def classes(self) -> str:
+        """Classes that a widget's curve has, as in ``"elbow d1"``."""
+        return f"{self.tone if isinstance(self.tone, str) else f'c{self.tone}'} d{self.dash}"
+
 
 def looks(names: Iterable[str], roles: Mapping[str, str] | None = None) -> dict[str, Look]:
     """How the curves of a figure are drawn: **a name says its role**, and no two have one dash.
 
     The first word of a name that means a role gives it the role's colour: *elbow, trained* is the
     elbow's. What answers to acceleration (a parabola) is even, what answers to velocity (a line)
-    odd; *true* and *this arm* are measured, a *reference* is wanted. One or two names without a
-    role are ink and grey; more are unrelated things, and have `COLOURS`. A role has its own dash,
-    if another curve of the figure has not got it already.
+    odd; *this arm* is measured; a *reference*, a *target* and the *truth* are wanted. One or two
+    names without a role are ink and grey; more are unrelated things, and have `COLOURS`. A role
+    has its own dash, if another curve of the figure has not got it already.
 
     Parameters
     ----------

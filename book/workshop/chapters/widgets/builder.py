@@ -135,10 +135,12 @@ class FilterBuilder(PageWidget):
             return {f"own {what}": "yours", aim: label, **others}
 
         output, gain = curves("output", "truth", "true"), curves("gain", "ideal", "ideal, (2πν)²")
+        roles = {"roles": {"a trained unit": "network"}}
         panels = [
-            Panel("Acceleration, rad/s²", output, "time, s", time, y_range=(-most, most)),
-            Panel("Gain, 1/s²", gain, "frequency, Hz", _FREQUENCIES, "log", "log", y_range=_GAINS),
-        ]
+            Panel("Acceleration, rad/s²", output, "time, s", time, y_range=(-most, most), **roles),
+            Panel("Gain, 1/s²", gain, "frequency, Hz", _FREQUENCIES, "log", "log", y_range=_GAINS,
+                  **roles),
+        ]  # fmt: skip
         spec = {
             "title": "Draw a filter by hand: measure acceleration",
             "hint": _HINT,

@@ -94,6 +94,7 @@ class SlidingWindow(CurveWidget):
                     kind="bars",
                     ticks=list(enumerate(units)),
                     y_range=(0.0, 1.0),
+                    roles={"activity": "network"},
                 ),
                 *(
                     Panel(
