@@ -39,7 +39,7 @@ INK = "#010203"
 FAINT = "#7f7f7f"
 """Colour of grids and secondary lines; legible on light and on dark pages."""
 
-COLOURS = ("#a0504c", "#5ca074", "#64649c", "#ac8c68", "#ac6c90", "#647030")
+COLOURS = ("#a0504c", "#5ca074", "#7272ac", "#ac8c68", "#ac6c90", "#727e3c")
 """Of many curves that have no role; pale, so that none looks like one, and legible on any page."""
 
 ROLES = {
@@ -65,13 +65,13 @@ _OWN_DASH = {"elbow": 1, "network": 1, "constant": 2, "odd": 1, "wanted": 3, "be
 _WORDS = {
     "shoulder": r"shoulder",
     "elbow": r"elbow",
-    "measured": r"measured|recorded|reading|real|th(is|e) arm",
+    "measured": r"measured|recorded|reading|real|true|truth|th(is|e) arm",
     "network": r"networks?|weights|gradient",
     "window": r"window(?! (of )?\d)",
     "constant": r"constant",
     "even": r"even|acceleration|parabola|inertial|coupling",
-    "odd": r"odd|velocity|line|viscous|centrifugal|coriolis",
-    "wanted": r"wanted|reference|planned|ideal|target|true|truth",
+    "odd": r"odd|velocity|line|centrifugal|coriolis",
+    "wanted": r"wanted|reference|planned|ideal|target",
     "before": r"before|untrained",
 }
 _NAMED = re.compile("|".join(rf"(?P<{role}>\b({words})\b)" for role, words in _WORDS.items()), re.I)
@@ -105,9 +105,9 @@ def looks(names: Iterable[str], roles: Mapping[str, str] | None = None) -> dict[
 
     The first word of a name that means a role gives it the role's colour: *elbow, trained* is the
     elbow's. What answers to acceleration (a parabola) is even, what answers to velocity (a line)
-    odd; *this arm* is measured; a *reference*, a *target* and the *truth* are wanted. One or two
-    names without a role are ink and grey; more are unrelated things, and have `COLOURS`. A role
-    has its own dash, if another curve of the figure has not got it already.
+    odd; *this arm* and the *truth* are measured, a *reference* is wanted. One or two names without
+    a role are ink and grey; more are unrelated things, and have `COLOURS`. A role has its own
+    dash, if another curve of the figure has not got it already.
 
     Parameters
     ----------

@@ -282,7 +282,7 @@ def _row_and_parts(axis: Axes, parts, step: float, room: float) -> None:
     half = f.size // 2
     x = np.arange(-half, half + 1) * step
     constant = np.broadcast_to(parts.constant, f.shape)
-    axis.plot(x, f, color=INK, lw=2.8, alpha=0.55, label="weights")
+    axis.plot(x, f, color=TONES["network"], lw=2.8, alpha=0.5, label="weights")
     for k, (name, y) in enumerate({"constant": constant, "even": parts.even,
                                    "odd": parts.odd}.items()):  # fmt: skip
         look = {"color": TONES[name], "ls": ("-.", "-", "--")[k], "lw": 1.5}

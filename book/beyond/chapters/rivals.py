@@ -303,8 +303,8 @@ def _draw_network(axis: Axes) -> None:
             axis.plot([x.mean(), unit], [0.2, 0.52], color=FAINT, lw=0.5, alpha=0.7)
         axis.plot([x.mean(), 0.5], [0.2, 1.0], "--", color=TONES["network"], lw=0.9, alpha=0.7)
     for unit, weight in zip(units, out / abs(out).max()):
-        look = dict(color=_SIGNED(0.5 + weight / 2), lw=0.6 + 2 * abs(weight))
-        axis.plot([unit, 0.5], [0.52, 1.0], **look)
+        look = dict(color=TONES["network"], lw=0.6 + 2 * abs(weight))
+        axis.plot([unit, 0.5], [0.52, 1.0], "-" if weight > 0 else ":", **look)
     look = dict(cmap="Greys_r", vmin=-0.1, vmax=1.1, ec=INK, zorder=3)
     axis.scatter(units, np.full(len(units), 0.52), s=70, c=activity, **look)
     axis.plot(0.5, 1.0, "o", color=INK, ms=8)
