@@ -15,6 +15,7 @@ from .style import (
     FAINT as FAINT,
     INK as INK,
     JOINTS as JOINTS,
+    MEANINGS as MEANINGS,
     ROLES as ROLES,
     TONES as TONES,
     Illustration as Illustration,

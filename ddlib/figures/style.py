@@ -52,8 +52,21 @@ ROLES = {
     "odd": ("#4a1fa8", "#cbb5ff"),
     "wanted": ("#007f86", "#2ec4d6"),
 }
-"""What a colour means, on light and on dark pages. Two more roles are drawn in the page's own ink:
-what was *measured*, and, paler, what was *before*."""
+"""The colours of roles, on light and on dark pages; two more are drawn in ink and in grey."""
+
+MEANINGS = {
+    "shoulder": "of the shoulder: its link, its angle, its torque, its window",
+    "elbow": "of the elbow",
+    "measured": "what the arm did: a measured torque, a true value",
+    "network": "what a network answers, and its weights",
+    "window": "the samples that a network sees: a bracket or an area",
+    "constant": "the constant part of a filter, which measures position",
+    "even": "the even part, and what answers to acceleration",
+    "odd": "the odd part, and what answers to velocity",
+    "wanted": "a reference, a plan, a target",
+    "before": "how it was before the last change",
+}
+"""What each of the ten roles stands for; the book's *Notation* shows them."""
 
 TONES = {role: light for role, (light, _) in ROLES.items()} | {"measured": INK, "before": FAINT}
 """By role, the colour that a figure is drawn in; a dark page puts the other one in its place."""

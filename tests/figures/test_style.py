@@ -13,7 +13,7 @@ from pictures import SVG, black_or_white, check_sound, drawn, ids, size, words
 from PIL import Image
 from pypdf import PdfReader
 
-from ddlib.figures import COLOURS, DASHES, FAINT, ROLES, TONES, illustrate, looks, style
+from ddlib.figures import COLOURS, DASHES, FAINT, MEANINGS, ROLES, TONES, illustrate, looks, style
 from ddlib.figures.style import fixed
 
 
@@ -81,6 +81,7 @@ def test_no_two_curves_of_a_figure_look_alike(names):
 
 def test_roles_are_legible_and_the_same_in_figures_and_in_the_page_s_style_sheet():
     style = (ROOT / "book" / "_static" / "book.css").read_text(encoding="utf-8")
+    assert MEANINGS.keys() == TONES.keys() and len(TONES) == 10
     for role, (light, dark) in ROLES.items():
         assert contrast(light, "#ffffff") >= 4.5 and contrast(dark, "#16191d") >= 4.5
         assert f"--dd-{role}: {dark};" in style
