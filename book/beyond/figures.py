@@ -41,7 +41,7 @@ def maps(
             mesh = axis.pcolormesh(edge, edge, np.transpose(values), norm=norm, cmap=COLOUR_MAP,
                                    shading="nearest", linewidth=0.2, edgecolor="face")  # fmt: skip
             if mark is not None:
-                axis.plot(*mark, "D", color=COLOURS[1], mec="white", ms=7)
+                axis.plot(*mark, "D", color=COLOURS[0], mec="white", ms=7)
             axis.set_title(title)
             axis.set_aspect("equal")
             axis.grid(False)

@@ -15,12 +15,15 @@ from .style import (
     FAINT as FAINT,
     INK as INK,
     JOINTS as JOINTS,
+    MEANINGS as MEANINGS,
     ROLES as ROLES,
     TONES as TONES,
     Illustration as Illustration,
+    Look as Look,
     check_label as check_label,
     illustrate as illustrate,
     legend_above as legend_above,
+    looks as looks,
     plain_ticks as plain_ticks,
 )
 from .weights import (

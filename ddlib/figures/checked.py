@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ddlib._check import integer
-from ddlib.figures.style import COLOURS, JOINTS, Illustration, illustrate, legend_above
+from ddlib.figures.style import COLOURS, JOINTS, TONES, Illustration, illustrate, legend_above
 from ddlib.logs.findings import Check
 
 _POINTS = 400  # of a curve: more are not seen, and weigh
@@ -43,14 +43,14 @@ def checked(check: Check, run: int | None = None) -> Illustration:
         shown = {}
         for j, row in enumerate(axes):
             for axis, (label, values) in zip(row, series.items()):
-                axis.plot(t[::every], values[::every, j], color=COLOURS[0], lw=0.9)
+                axis.plot(t[::every], values[::every, j], color=TONES[JOINTS[j]], lw=0.9)
                 for k, kind in enumerate(dict.fromkeys(finding.kind for finding in marked)):
                     rows = [f.rows for f in marked if f.kind == kind and f.joint in (None, j)]
                     if not rows:
                         continue
                     at = np.concatenate(rows)
                     at = at[:: max(1, len(at) // 60)]
-                    look = {"color": COLOURS[1 + k % 5], "marker": "osv^D"[k % 5], "ms": 3.5}
+                    look = {"color": COLOURS[k % 6], "marker": "osv^D"[k % 5], "ms": 3.5}
                     (shown[kind],) = axis.plot(t[at], values[at, j], ls="", **look)
                 axis.set_ylabel(label)
                 axis.set_title(JOINTS[j])

@@ -16,12 +16,12 @@ from matplotlib.path import Path
 
 from ddlib._check import flag, integer, mapping, number, shaped, text, texts
 from ddlib.figures.style import (
-    COLOURS,
-    DASHES,
+    INK,
     Illustration,
     check_label,
     illustrate,
     legend_above,
+    looks,
     plain_ticks,
 )
 
@@ -38,6 +38,9 @@ def curves(
     y_log=False,
 ) -> Illustration:
     """Curves over a common axis, one panel below (or beside) the other.
+
+    Their names say how they are drawn (`looks`): call a curve *elbow*, *network* or *reference*,
+    and it has the colour that this has in all figures.
 
     Parameters
     ----------
@@ -66,16 +69,14 @@ def curves(
     rows = -(-len(panels) // columns)
     names = [tuple(named) for named in panels.values()]
     above = len(names[0]) > 1 and len(set(names)) == 1  # where no curve can run through it
-    look = {name: k for k, name in enumerate(dict.fromkeys(sum(names, ())))}
+    look = looks(sum(names, ()))  # the same curve looks the same in every panel
 
     def draw(figure: Figure):
         axes = figure.subplots(rows, columns, sharex=True, squeeze=False).ravel()
         for axis, (label, named) in zip(axes, panels.items()):
             for name, y in named.items():
                 x_k, y_k = y if isinstance(y, tuple) else (x, y)
-                k = look[name]  # the same curve looks the same in every panel
-                dash = DASHES[k % len(DASHES)]
-                axis.plot(x_k, y_k, color=COLOURS[k % len(COLOURS)], ls=dash, label=name)
+                axis.plot(x_k, y_k, label=name, **look[name].line)
             axis.set_ylabel(check_label(label))
             if x_log:
                 axis.set_xscale("log")
@@ -135,7 +136,7 @@ def families(
         for name, (x, y) in named.items():
             x = shaped(f"x of {name!r}", x, "(points,)")
             shaped(f"y of {name!r}", y, f"({len(x)}, networks)")
-    look = {n: k for k, n in enumerate(dict.fromkeys(n for p in panels.values() for n in p))}
+    look = looks(name for named in panels.values() for name in named)
     columns = min(2, len(panels))
     rows = -(-len(panels) // columns)
 
@@ -143,10 +144,9 @@ def families(
         axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
         for axis, (title, named) in zip(axes, panels.items()):
             for name, (x, y) in named.items():
-                k = look[name]
-                colour, dash = COLOURS[k % len(COLOURS)], DASHES[k % len(DASHES)]
-                axis.plot(x, y, color=colour, lw=0.6, alpha=0.45)
-                axis.plot(x, np.median(y, axis=1), color=colour, ls=dash, lw=2.2)
+                line = look[name].line
+                axis.plot(x, y, color=line["color"], lw=0.6, alpha=0.45)
+                axis.plot(x, np.median(y, axis=1), lw=2.2, **line)
             axis.set_title(title)
             for which, log in (("x", x_log), ("y", y_log)):
                 if log:
@@ -157,10 +157,7 @@ def families(
         figure.supxlabel(labels[0])
         figure.supylabel(labels[1])
         if len(look) > 1 and max(map(len, panels.values())) > 1:
-            handles = [
-                Line2D([], [], color=COLOURS[k % len(COLOURS)], ls=DASHES[k % len(DASHES)], lw=2.2)
-                for k in look.values()
-            ]
+            handles = [Line2D([], [], lw=2.2, **each.line) for each in look.values()]
             figure.legend(handles, list(look), loc="outside upper left", ncols=4)
 
     return illustrate(draw, alt, 7.0, height * rows + 0.5)
@@ -214,7 +211,7 @@ def by_case(
     def draw(figure: Figure):
         axes = figure.subplots(len(cases), 1, sharex=True, squeeze=False)[:, 0]
         for axis, (case, values) in zip(axes, cases.items()):
-            axis.plot(x, values, color=COLOURS[0])
+            axis.plot(x, values, color=INK)
             axis.set(title=case, ylabel=check_label(y_label))
         axes[-1].set_xlabel(check_label(x_label))
 

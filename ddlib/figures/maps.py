@@ -12,6 +12,7 @@ from ddlib._check import finite_array, mapping
 from ddlib.figures.style import (
     COLOURS,
     INK,
+    TONES,
     Illustration,
     illustrate,
     legend_above,
@@ -64,7 +65,7 @@ def rmss_by_window(
                     axis.plot(middle + np.array([-0.42, 0.42]) * shift, [np.median(values)] * 2,
                               color=INK, lw=2)  # fmt: skip
             for place, value in enumerate(marks.values()):
-                axis.plot([place - 0.46, place + 0.46], [value] * 2, color=COLOURS[3], lw=1.8,
+                axis.plot([place - 0.46, place + 0.46], [value] * 2, color=TONES["wanted"], lw=1.8,
                           ls="--", label="printed")  # fmt: skip
             axis.set_xticks(range(len(marks)), [str(w) for w in marks])
             axis.set(xlabel="window, samples", title=column, yscale="log")

@@ -12,7 +12,7 @@ import io
 import itertools
 import re
 import textwrap
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -39,8 +39,8 @@ INK = "#010203"
 FAINT = "#7f7f7f"
 """Colour of grids and secondary lines; legible on light and on dark pages."""
 
-COLOURS = ("#2f7fd1", "#d4680b", "#219a6c", "#c2559d", "#8c7ae6", "#a08100")
-"""Line colours, each with a contrast of 3:1 or more on white and on near-black."""
+COLOURS = ("#a0504c", "#5ca074", "#7272ac", "#ac8c68", "#ac6c90", "#727e3c")
+"""Of many curves that have no role; pale, so that none looks like one, and legible on any page."""
 
 ROLES = {
     "shoulder": ("#1f76d2", "#4f9ff0"),
@@ -52,13 +52,98 @@ ROLES = {
     "odd": ("#4a1fa8", "#cbb5ff"),
     "wanted": ("#007f86", "#2ec4d6"),
 }
-"""What a colour means, on light and on dark pages. Ink is what was measured."""
+"""The colours of roles, on light and on dark pages; two more are drawn in ink and in grey."""
 
-TONES = {role: light for role, (light, _) in ROLES.items()}
+MEANINGS = {
+    "shoulder": "of the shoulder: its link, its angle, its torque, its window",
+    "elbow": "of the elbow",
+    "measured": "what the arm did: a measured torque, a true value",
+    "network": "what a network answers, and its weights",
+    "window": "the samples that a network sees: a bracket or an area",
+    "constant": "the constant part of a filter, which measures position",
+    "even": "the even part, and what answers to acceleration",
+    "odd": "the odd part, and what answers to velocity",
+    "wanted": "a reference, a plan, a target",
+    "before": "how it was before the last change",
+}
+"""What each of the ten roles stands for; the book's *Notation* shows them."""
+
+TONES = {role: light for role, (light, _) in ROLES.items()} | {"measured": INK, "before": FAINT}
 """By role, the colour that a figure is drawn in; a dark page puts the other one in its place."""
 
 DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)))
 """Line styles that go with the colours, so that colour is never the only difference."""
+
+_OWN_DASH = {"elbow": 1, "network": 1, "constant": 2, "odd": 1, "wanted": 3, "before": 1}
+_WORDS = {
+    "shoulder": r"shoulder",
+    "elbow": r"elbow",
+    "measured": r"measured|recorded|reading|real|true|truth|th(is|e) arm",
+    "network": r"networks?|weights|gradient",
+    "window": r"window(?! (of )?\d)",
+    "constant": r"constant",
+    "even": r"even|acceleration|parabola|inertial|coupling",
+    "odd": r"odd|velocity|line|centrifugal|coriolis",
+    "wanted": r"wanted|reference|planned|ideal|target",
+    "before": r"before|untrained",
+}
+_NAMED = re.compile("|".join(rf"(?P<{role}>\b({words})\b)" for role, words in _WORDS.items()), re.I)
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a curve is drawn: by a role of `TONES` or a number of `COLOURS`, and of `DASHES`."""
+
+    tone: str | int  #: A role, or a number of `COLOURS`.
+    dash: int  #: A number of `DASHES`.
+
+    @property
+    def colour(self) -> str:
+        """Its colour in a figure."""
+        return TONES[self.tone] if isinstance(self.tone, str) else COLOURS[self.tone]
+
+    @property
+    def line(self) -> dict:
+        """What matplotlib's `plot` takes of a line."""
+        return {"color": self.colour, "ls": DASHES[self.dash]}
+
+    @property
+    def classes(self) -> str:
+        """Classes that a widget's curve has, as in ``"elbow d1"``."""
+        return f"{self.tone if isinstance(self.tone, str) else f'c{self.tone}'} d{self.dash}"
+
+
+def looks(names: Iterable[str], roles: Mapping[str, str] | None = None) -> dict[str, Look]:
+    """How the curves of a figure are drawn: **a name says its role**, and no two have one dash.
+
+    The first word of a name that means a role gives it the role's colour: *elbow, trained* is the
+    elbow's. What answers to acceleration (a parabola) is even, what answers to velocity (a line)
+    odd; *this arm* and the *truth* are measured, a *reference* is wanted. One or two names without
+    a role are ink and grey; more are unrelated things, and have `COLOURS`. A role has its own
+    dash, if another curve of the figure has not got it already.
+
+    Parameters
+    ----------
+    names : iterable of str
+        All that are drawn, in order.
+    roles : mapping, optional
+        Roles of names that do not say them.
+    """
+    names = list(dict.fromkeys(names))
+    named = {name: match.lastgroup for name in names if (match := _NAMED.search(name))}
+    named |= {name: role for name, role in (roles or {}).items() if name in names}
+    others = [name for name in names if name not in named]
+    inks = [tone for tone in ("measured", "before") if tone not in named.values()]
+    colours = list(range(len(COLOURS)))
+    tones = [*inks, *colours] if len(others) < 3 else [*colours, *inks]
+    tone_of = named | dict(zip(others, itertools.cycle(tones)))
+    dash_of: dict[str, int] = {}
+    for name in (*named, *others):
+        own = _OWN_DASH.get(tone_of[name], 0)
+        free = [k for k in (own, *range(len(DASHES))) if k not in dash_of.values()]
+        dash_of[name] = free[0] if free else len(dash_of) % len(DASHES)
+    return {name: Look(tone_of[name], dash_of[name]) for name in names}
+
 
 JOINTS = ("shoulder", "elbow")
 """Names of joint 0 and joint 1."""

@@ -13,11 +13,11 @@ from matplotlib.ticker import MaxNLocator
 from ddlib._check import finite_array, instance, number, one_of, shaped
 from ddlib.analysis import decompose
 from ddlib.figures.style import (
-    COLOURS,
     FAINT,
     INK,
     JOINTS,
     NARROW,
+    ROLES,
     TONES,
     Illustration,
     illustrate,
@@ -50,14 +50,15 @@ def network_diagram(weights: Weights) -> Illustration:
         inputs = [
             row(axis, 0, width, 5.2 * j, 5.2 * j + 4.2, TONES[JOINTS[j]]) for j in range(joints)
         ]
-        middle = row(axis, 1.25, hidden, 1.2, 6.4, FAINT)
-        top = row(axis, 2.5, outputs, 8.6, 9.6, COLOURS[2])
+        middle = row(axis, 1.25, hidden, 1.2, 6.4, TONES["network"])
+        top = [row(axis, 2.5, 1, 8.6 + j, 8.6 + j, TONES[JOINTS[j]])[0] for j in range(outputs)]
         below = [x for places in inputs for x in places]
         for x0 in below:
             for x1 in middle:
                 axis.plot([x0, x1], [0, 1.25], color=FAINT, lw=0.35, alpha=0.6, zorder=1)
             for x1 in top:
-                axis.plot([x0, x1], [0, 2.5], color=COLOURS[3], lw=0.5, alpha=0.55, zorder=1)
+                look = {"color": TONES["network"], "lw": 0.5, "alpha": 0.55, "zorder": 1}
+                axis.plot([x0, x1], [0, 2.5], "--", **look)
         for x0 in middle:
             for x1 in top:
                 axis.plot([x0, x1], [1.25, 2.5], color=INK, lw=0.6, alpha=0.7, zorder=1)
@@ -66,7 +67,7 @@ def network_diagram(weights: Weights) -> Illustration:
             axis.text(5.2 * j + 2.1, -0.28, text, ha="center", va="top")
         axis.text(-0.2, 1.25, f"{hidden} hidden\nunits", ha="right", va="center")
         axis.text(9.1, 2.72, "torques: shoulder, elbow", ha="center", va="bottom")
-        axis.text(9.75, 1.3, "direct\nweights", ha="left", va="center", color=COLOURS[3])
+        axis.text(9.75, 1.3, "direct\nweights", ha="left", va="center", color=TONES["network"])
         axis.set(xlim=(-1.4, 10.8), ylim=(-0.9, 3.0))
         axis.axis("off")
 
@@ -178,7 +179,8 @@ def hinton_on(
         outputs = len(shown.output_bias)
         column, row = unit % columns, (unit >= outputs) * 0.15 + unit // columns
         corner = column * (unit_width + 1.5) + 1.1, -row * (unit_height + 1.0) - 5.15 - 1.4 * joint
-        axis.add_patch(Rectangle(corner, width + 0.8, 1.5, fc="none", ec=COLOURS[1], lw=1.6))
+        for edge, wide in (("#000000", 3.2), (ROLES["window"][1], 1.6)):  # seen on grey
+            axis.add_patch(Rectangle(corner, width + 0.8, 1.5, fc="none", ec=edge, lw=wide))
     axis.set(xlim=(-0.5, columns * (unit_width + 1.5) - 1.0), aspect="equal")
     axis.set_ylim(-(rows + 1.15) * (unit_height + 1.0) - 0.5, 0.8)
     axis.axis("off")
@@ -280,7 +282,7 @@ def _row_and_parts(axis: Axes, parts, step: float, room: float) -> None:
     half = f.size // 2
     x = np.arange(-half, half + 1) * step
     constant = np.broadcast_to(parts.constant, f.shape)
-    axis.plot(x, f, color=INK, lw=2.8, alpha=0.55, label="weights")
+    axis.plot(x, f, color=TONES["network"], lw=2.8, alpha=0.5, label="weights")
     for k, (name, y) in enumerate({"constant": constant, "even": parts.even,
                                    "odd": parts.odd}.items()):  # fmt: skip
         look = {"color": TONES[name], "ls": ("-.", "-", "--")[k], "lw": 1.5}

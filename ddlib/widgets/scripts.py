@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from ddlib.figures import COLOURS, ROLES
+from ddlib.figures import COLOURS, FAINT, ROLES
 
 _STATIC = Path(__file__).with_name("static")
 _IMPORT = re.compile(r'^import (?:\{[^}]*\} from )?"([^"]+)";\n', re.M)
@@ -40,11 +40,13 @@ def bundle(*names: str | Path) -> str:
 def styles(*names: str | Path) -> str:
     """The style sheet of all widgets, then others of the folder `static` or by full paths.
 
-    Colours are those of figures: ``var(--c0)`` and so on, and ``var(--colour)`` in what has the
-    class ``c0`` and so on; ``var(--even)`` and so on by their roles.
+    Colours are those of figures, by their roles: ``var(--even)`` and so on, and ``var(--colour)``
+    in what has the class ``even`` and so on; ``c0`` and so on where there is no role.
     """
-    hues = "".join(f"--c{k}: {colour}; " for k, colour in enumerate(COLOURS))
-    hues += "".join(f"--{role}: light-dark({a}, {b}); " for role, (a, b) in ROLES.items())
-    own = [f".ddlib-curves .c{k} {{ --colour: var(--c{k}); }}" for k in range(len(COLOURS))]
+    hues = {f"c{k}": colour for k, colour in enumerate(COLOURS)}
+    hues |= {role: f"light-dark({light}, {dark})" for role, (light, dark) in ROLES.items()}
+    hues |= {"measured": "var(--ink)", "before": FAINT}
+    own = [f".ddlib-curves .{name} {{ --colour: var(--{name}); }}" for name in hues]
+    hues = "".join(f"--{name}: {value}; " for name, value in hues.items())
     sheets = [(_STATIC / name).read_text(encoding="utf-8") for name in ("curves.css", *names)]
     return "\n".join([f".ddlib-curves {{ {hues}}}", *own, *sheets])

@@ -10,7 +10,7 @@ import numpy as np
 import traitlets
 from matplotlib.ticker import MultipleLocator
 
-from ddlib.figures import COLOURS, DASHES, illustrate
+from ddlib.figures import FAINT, INK, TONES, illustrate
 from ddlib.figures.style import fixed
 from ddlib.widgets.parts.panels import Pad, Panel
 from ddlib.widgets.parts.parameters import Parameter
@@ -74,7 +74,8 @@ def _draw_panel(ax, panel: Panel, curves):
     lines += panel.fixed.items()
     gap = np.diff(panel.x).min()
     for k, (label, y) in enumerate(lines):
-        colour, dash = COLOURS[k % len(COLOURS)], DASHES[k % len(DASHES)]
+        look = panel.looks[label]
+        colour = look.colour
         if panel.kind == "bars":
             width = 0.8 * gap / len(lines)
             places = panel.x + (k - (len(lines) - 1) / 2) * width
@@ -83,12 +84,12 @@ def _draw_panel(ax, panel: Panel, curves):
             ax.vlines(panel.x, 0, y, color=colour)
             ax.plot(panel.x, y, "os^D"[k % 4], ms=4, color=colour, label=label)
         else:
-            ax.plot(panel.x, y, color=colour, linestyle=dash, label=label)
+            ax.plot(panel.x, y, label=label, **look.line)
     places = [curves[name].item() for name in panel.cursor]
     if len(places) == 1:
-        ax.axvline(*places, color="#4d5660", linewidth=1)
+        ax.axvline(*places, color=FAINT, linewidth=1)
     elif places:
-        ax.axvspan(*sorted(places), color="#4d5660", alpha=0.2, linewidth=0)
+        ax.axvspan(*sorted(places), color=TONES["window"], alpha=0.2, linewidth=0)
     ax.set(
         xscale=panel.x_scale.replace("power", "linear"),
         yscale=panel.y_scale.replace("power", "linear"),
@@ -109,11 +110,11 @@ def _draw_panel(ax, panel: Panel, curves):
 def _draw_pad(ax, pad: Pad, parameters):
     x, y = parameters[pad.x], parameters[pad.y]
     if pad.region:
-        ax.fill(*zip(*pad.region), color=COLOURS[0], alpha=0.18, linewidth=0)
+        ax.fill(*zip(*pad.region), color=FAINT, alpha=0.25, linewidth=0)
     groups = list(dict.fromkeys(mark.group for mark in pad.marks))
     for mark in pad.marks:
         k = groups.index(mark.group)
-        ax.plot(mark.x, mark.y, "os^D"[k % 4], color=COLOURS[k], clip_on=False)
+        ax.plot(mark.x, mark.y, "os^D"[k % 4], color=pad.looks[mark.group].colour, clip_on=False)
         # inwards from the right and the upper edge, where there is no room
         right = mark.x > x.place(0.9)
         above = mark.y <= y.place(0.9)
@@ -125,7 +126,7 @@ def _draw_pad(ax, pad: Pad, parameters):
             ha="right" if right else "left",
             va="bottom" if above else "top",
         )
-    ax.plot(x.value, y.value, "o", ms=11, mfc="none", mec="#1a1a1a", clip_on=False)
+    ax.plot(x.value, y.value, "o", ms=11, mfc="none", mec=INK, clip_on=False)
     ax.set(xscale=x.scale, yscale=y.scale)
     ax.set(xlim=(x.low, x.high), ylim=(y.low, y.high), aspect="auto")
     ax.set(xlabel=_name(x), ylabel=_name(y))

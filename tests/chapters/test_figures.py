@@ -64,7 +64,7 @@ COUNTS = {
 RINGING = np.zeros((2, 30, 6))
 RINGING[1, 3] = [0.5, -0.7, 1.5, 0.0, 0.0, -9.0]
 TIED = {
-    "line": np.stack([np.linspace(0, 1, 30), -2 * np.linspace(0, 1, 30)], -1)[None],
+    "tight": np.stack([np.linspace(0, 1, 30), -2 * np.linspace(0, 1, 30)], -1)[None],
     "dots": RNG.normal(size=(2, 30, 2)),
 }
 SIDES = {

@@ -8,7 +8,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from pictures import boxes, check, drawn
 
-from ddlib.figures import COLOURS, hinton
+from ddlib.figures import ROLES, hinton
 from ddlib.figures.weights import hinton_on, relative_weights
 from ddlib.learning import Weights
 from workshop.chapters.whole_state_space import hinton_states
@@ -137,7 +137,9 @@ def test_a_row_gets_a_frame(unit, joint):
     rest = Weights.random(1, 11, 5)[0]
     axis = Figure().subplots()
     hinton_on(axis, rest, ring=(unit, joint))
-    frame = next(p for p in axis.patches if to_hex(p.get_edgecolor()) == COLOURS[1]).get_bbox()
+    frame = next(
+        p for p in axis.patches if to_hex(p.get_edgecolor()) == ROLES["window"][1]
+    ).get_bbox()
     inside = [
         p
         for p in axis.patches

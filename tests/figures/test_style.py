@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from book_pages import ROOT
 from hypothesis import given, settings, strategies as st
-from matplotlib.colors import rgb_to_hsv, to_rgb
+from matplotlib.colors import to_rgb
 from pictures import SVG, black_or_white, check_sound, drawn, ids, size, words
 from PIL import Image
 from pypdf import PdfReader
 
-from ddlib.figures import COLOURS, DASHES, FAINT, ROLES, illustrate, style
+from ddlib.figures import COLOURS, DASHES, FAINT, MEANINGS, ROLES, TONES, illustrate, looks, style
 from ddlib.figures.style import fixed
 
 
@@ -50,13 +50,38 @@ def test_colours_are_seen_in_light_and_in_dark_and_never_the_only_difference():
     for colour in (*COLOURS, FAINT):
         assert contrast(colour, "#ffffff") >= 3 and contrast(colour, "#121212") >= 3
     assert len(DASHES) == len(COLOURS) == len(set(COLOURS)) == len(set(map(str, DASHES)))
-    hues = rgb_to_hsv([to_rgb(colour) for colour in COLOURS])[:, 0]
-    # captions call them so: orange, ochre, green, blue, violet, pink
-    assert np.argsort(hues).tolist() == [1, 5, 2, 0, 4, 3]
+    vivid = [tone for pair in ROLES.values() for tone in pair]
+    apart = [np.linalg.norm(np.subtract(to_rgb(a), to_rgb(b))) for a in COLOURS for b in vivid]
+    assert min(apart) > 0.15  # what has no role looks like none
+
+
+SAID = {
+    "measured": "measured", "this arm's torques": "measured", "the network": "network",
+    "elbow, trained": "elbow", "from the shoulder's window": "shoulder", "window": "window",
+    "even part": "even", "a parabola": "even", "a line": "odd", "Coriolis": "odd",
+    "reference": "wanted", "the true one": "measured", "before training": "before",
+}  # fmt: skip
+
+
+def test_a_name_says_its_role():
+    for name, role in SAID.items():
+        assert looks(["a", "b", "c", name])[name].tone == role
+    for name in ("window 21", "window of 11", "linear filter", "least squares", "events"):
+        assert isinstance(looks(["a", "b", name])[name].tone, int)
+    few = looks(["measured", "equations", "network"])
+    assert [few[name].tone for name in few] == ["measured", "before", "network"]
+    assert looks(["a"], {"a": "odd"})["a"].line == {"color": TONES["odd"], "ls": "--"}
+
+
+@given(names=st.lists(st.sampled_from([*SAID, *"abcdef"]), min_size=1, max_size=6, unique=True))
+def test_no_two_curves_of_a_figure_look_alike(names):
+    found = looks(names)
+    assert list(found) == names and len({look.dash for look in found.values()}) == len(names)
 
 
 def test_roles_are_legible_and_the_same_in_figures_and_in_the_page_s_style_sheet():
     style = (ROOT / "book" / "_static" / "book.css").read_text(encoding="utf-8")
+    assert MEANINGS.keys() == TONES.keys() and len(TONES) == 10
     for role, (light, dark) in ROLES.items():
         assert contrast(light, "#ffffff") >= 4.5 and contrast(dark, "#16191d") >= 4.5
         assert f"--dd-{role}: {dark};" in style

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import pytest
+from matplotlib.colors import to_rgb
+from pictures import GREY, role_of
 from traitlets import TraitError
-from widget_pages import BRIDGE, NEXT_FRAME, copied
+from widget_pages import BRIDGE, NEXT_FRAME, copied, page_of
 from widget_samples import make, sample_of, widget_kinds
+
+from ddlib.figures import COLOURS, FAINT, ROLES
 
 by_kind = pytest.mark.parametrize("kind", widget_kinds(), ids=lambda kind: kind.__name__)
 in_browser = pytest.mark.browser
@@ -118,3 +122,49 @@ def test_a_trait_may_be_set_before_there_is_a_size(page_with, every, hidden):
     assert not page.locator(".ddlib-widget-error").all_inner_texts()
     assert page.locator("main > div.ddlib-widget").count() == len(every)
     assert page.locator(".chart > svg").count() > 20
+
+
+HUES = """() => {
+  const plain = (colours) => colours.filter((c) => c.startsWith("rgb("));
+  const of = (el) => plain([getComputedStyle(el).stroke, getComputedStyle(el).fill]);
+  const all = (what) => [...document.querySelectorAll(`.ddlib-widget ${what}`)];
+  const parts = all("svg :is(path, line, rect, circle, polyline, polygon)");
+  const inks = all("").flatMap((el) => {
+    const probe = el.appendChild(document.createElement("i"));
+    const found = ["ink", "soft", "line", "paper"].map((name) => {
+      probe.style.color = `var(--${name})`;
+      return getComputedStyle(probe).color;
+    });
+    probe.remove();
+    return found;
+  });
+  return {
+    drawn: [...new Set(parts.filter((el) => !el.closest("defs")).flatMap(of))],
+    inks,
+    named: all(".legend span:has(path):not(.ddlib-throw *)") // there the arm's own velocity is ink
+      .map((el) => [el.textContent, of(el.querySelector("path:last-child"))]),
+  };
+}"""
+"""Colours of all that is drawn, of the page's own inks, and of each name in a legend."""
+
+
+@in_browser
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_colours_are_of_roles_and_a_name_has_its_own(tmp_path, visit, every, scheme):
+    page = visit(page_of(tmp_path / "page.html", *every), scheme=scheme).page
+    page.evaluate(NEXT_FRAME)
+    found = page.evaluate(HUES)
+    tones = {role: seen(pair[scheme == "dark"]) for role, pair in ROLES.items()}
+    known = {*tones.values(), *found["inks"], *map(seen, (*COLOURS, FAINT, GREY, "white", "black"))}
+    on_grey = seen(ROLES["window"][1])
+    assert set(found["drawn"]) <= {*known, on_grey}
+    assert set(tones.values()) <= set(found["drawn"])
+    named = [(role_of(name), name, hues) for name, hues in found["named"]]
+    assert {role for role, *_ in named} > {"shoulder", "elbow", "network", "even", "odd", "wanted"}
+    wrong = [(name, hues) for role, name, hues in named if role and tones[role] not in hues]
+    assert not wrong, wrong
+
+
+def seen(colour: str) -> str:
+    """A colour as a browser writes it."""
+    return "rgb({:.0f}, {:.0f}, {:.0f})".format(*(255 * part for part in to_rgb(colour)))

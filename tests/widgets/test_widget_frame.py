@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from matplotlib.colors import to_rgb
 from widget_pages import NEXT_FRAME, Finger, copied, page_of, phone, shown_values
 from widget_samples import make, make_kinds
 
-from ddlib.figures import COLOURS
 from ddlib.widgets import Presets
 
 CODE = "result = {gain} * {decay} + {other}"
@@ -107,25 +105,6 @@ def test_hover_and_keys_read_values(page_with, widget):
     assert box.locator(".where").inner_text() == "time 0.25\u00a0s"
     page.keyboard.press("Escape")
     assert not box.is_visible()
-
-
-HUES = """() => {
-  const svg = document.querySelector(".chart > svg");
-  return [0, 1, 2, 3, 4, 5].map((k) => {
-    const path = document.createElementNS("http://www.w3.org/2000/svg", "path");
-    path.setAttribute("class", `curve c${k}`);
-    svg.append(path);
-    return getComputedStyle(path).stroke;
-  });
-}"""
-
-
-@browser_test
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_curves_have_the_colours_of_figures(tmp_path, visit, widget, scheme):
-    page = visit(page_of(tmp_path / "page.html", widget), scheme=scheme).page
-    wanted = [tuple(round(255 * part) for part in to_rgb(colour)) for colour in COLOURS]
-    assert page.evaluate(HUES) == [f"rgb{rgb}" for rgb in wanted]
 
 
 @browser_test

@@ -13,14 +13,13 @@ from beyond.studies.loop import fair_rivals
 from beyond.studies.loop.adaptive_laws import WITH_FRICTION
 from ddlib.figures import (
     COLOUR_MAP,
-    COLOURS,
-    DASHES,
     FAINT,
     INK,
     Illustration,
     check_label,
     illustrate,
     legend_above,
+    looks,
 )
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.tables import Table, quote, significant
@@ -39,17 +38,16 @@ def courses(
     After the motion `change` something happens, the `event`.
     """
 
+    look = looks(name for controllers in panels.values() for name in controllers)
+
     def draw(figure: Figure):
         axes = figure.subplots(1, len(panels), squeeze=False, sharey=True)[0]
         for axis, (title, controllers) in zip(axes, panels.items()):
-            for k, errors in enumerate(controllers.values()):
+            for k, (name, errors) in enumerate(controllers.items()):
                 low, middle, high = np.percentile(errors, (25, 50, 75), axis=1)
                 x = 1 + np.arange(len(errors))
-                style = {"color": COLOURS[k % len(COLOURS)]}
-                axis.fill_between(x, low, high, alpha=0.15, lw=0, **style)
-                axis.plot(
-                    x, middle, ls=DASHES[k % len(DASHES)], marker="os^Dv*"[k % 6], ms=3.5, **style
-                )
+                axis.fill_between(x, low, high, alpha=0.15, lw=0, color=look[name].colour)
+                axis.plot(x, middle, marker="os^Dv*"[k % 6], ms=3.5, **look[name].line)
             axis.set(title=title, yscale="log", xticks=x)
             axis.axvline(change + 0.5, color=INK, lw=0.8)
             axis.text(
@@ -222,8 +220,8 @@ def fair_figure() -> Illustration:
         axis, rows = figure.subplots(), np.arange(len(errors))[::-1]
         for k, (_, first, final, mark) in enumerate(pairs):
             ends = np.array([[e[first], e[final]] for e in errors.values()])
-            height, look = rows + (0.16, -0.16)[k], {"color": COLOURS[k], "ls": "", "ms": 6}
-            axis.hlines(height, *ends.T, color=COLOURS[k], lw=1.2)
+            height, look = rows + (0.16, -0.16)[k], {"color": (INK, FAINT)[k], "ls": "", "ms": 6}
+            axis.hlines(height, *ends.T, color=look["color"], lw=1.2)
             axis.plot(ends[:, 0], height, mark, mfc="none", **look)
             axis.plot(ends[:, 1], height, mark, **look)
         axis.set(xscale="log", ylim=(-0.6, len(errors) - 0.4))

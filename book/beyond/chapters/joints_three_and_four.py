@@ -13,6 +13,7 @@ from ddlib.figures import (
     DASHES,
     FAINT,
     INK,
+    TONES,
     Illustration,
     check_label,
     illustrate,
@@ -84,7 +85,7 @@ def gains_by_torque(inertia, real, unrelated, label: str, alt: str) -> Illustrat
             for k, gains in enumerate(real[:, j]):
                 x = place + 0.4 * (k / max(len(real) - 1, 1) - 0.5)
                 name = "networks" if k == 0 else None
-                axis.plot(x, gains, "o", color=COLOURS[0], ms=3, mew=0, alpha=0.8, label=name)
+                axis.plot(x, gains, "o", color=TONES["network"], ms=3, mew=0, alpha=0.8, label=name)
             axis.set(title=f"torque {j + 1}", xticks=place)
             axis.grid(visible=False, axis="x")
         axes[0].set_ylabel(check_label(label))

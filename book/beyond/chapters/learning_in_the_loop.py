@@ -8,7 +8,7 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 from scipy.signal import butter, cont2discrete, lfilter, sosfiltfilt
 
 from ddlib.dynamics import CMU_DD_ARM_II, PUMA_560, count_operations, newton_euler
-from ddlib.figures import COLOURS, FAINT, INK, Illustration, check_label, illustrate, legend_above
+from ddlib.figures import FAINT, INK, Illustration, check_label, illustrate, legend_above, looks
 from ddlib.setups import KD, KP
 from ddlib.simulation import CONTROL_STEP
 from ddlib.tables import Table, quote, significant, spread
@@ -56,8 +56,9 @@ def _by_trial(
     each panel is in the page's ink: what the others are compared with.
     """
     first = {next(iter(learners)) for learners in panels.values()}
-    names = dict.fromkeys(n for each in panels.values() for n in each if n not in first)
-    looks = dict(zip(names, zip(COLOURS, _MARKERS)))
+    names = [n for each in panels.values() for n in each]
+    tones = looks(names, dict.fromkeys(first, "measured"))
+    markers = dict(zip((name for name in tones if name not in first), _MARKERS))
 
     def draw(figure: Figure):
         axes = figure.subplots(len(panels), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
@@ -65,7 +66,7 @@ def _by_trial(
             axis.set(yscale="log", xscale="log" if x_log else "linear")
             axis.set_title(title, loc="left")
             for name, (x, errors) in learners.items():
-                colour, marker = looks.get(name, (INK, None))
+                colour, marker = tones[name].colour, markers.get(name)
                 low, middle, high = np.percentile(errors, (25, 50, 75), axis=1)
                 axis.fill_between(x, low, high, color=colour, alpha=0.15, lw=0)
                 look = {"marker": marker, "ms": 4} if marker else {"ls": "--"}
@@ -92,6 +93,7 @@ def _by_trial(
 def motions_figure() -> Illustration:
     """Errors while one motion is practised, and then on others over that of the feedback alone."""
     motions = list(part("motion")["tests"])[1:]
+    tones = looks(["measured", *_ONE_MOTION])  # ink is the feedback alone
 
     def draw(figure: Figure):
         left, right = figure.subplots(1, 2, width_ratios=(1, 1.25))
@@ -99,12 +101,14 @@ def motions_figure() -> Illustration:
         left.axhline(alone, color=INK, ls="--", lw=1.2, label="feedback alone")
         right.axvline(1.0, color=INK, ls="--", lw=1.2)
         for k, name in enumerate(_ONE_MOTION):
-            look = {"color": COLOURS[k], "marker": _MARKERS[k], "ms": 4}
+            look = {"color": tones[name].colour, "marker": _MARKERS[k], "ms": 4}
             course = np.median(part("motion")["practice"][name], axis=1)
             left.plot(1 + np.arange(len(course)), course, lw=1.5, label=name, **look)
             for row, motion in enumerate(motions):
                 ratio, place = on(motion, name) / on(motion, PLAIN), row + 0.14 * (k - 2)
-                right.plot([ratio.min(), ratio.max()], [place] * 2, color=COLOURS[k], lw=1.2)
+                right.plot(
+                    [ratio.min(), ratio.max()], [place] * 2, color=tones[name].colour, lw=1.2
+                )
                 right.plot(np.median(ratio), place, **look)
         left.set(yscale="log", xlabel="trial of one motion", ylabel="end-point error, mm")
         right.set(xscale="log", xlabel="error, over the feedback's alone")
@@ -206,9 +210,9 @@ def converges_figure() -> Illustration:
 
     def draw(figure: Figure):
         over, course = figure.subplots(1, 2)
-        for k, name in enumerate(_MEMORIES):
-            over.plot(omega, factor[name], color=COLOURS[k], label=name)
-            course.plot(1 + np.arange(100), missing[name], color=COLOURS[k])
+        for name, look in looks(_MEMORIES).items():
+            over.plot(omega, factor[name], label=name, **look.line)
+            course.plot(1 + np.arange(100), missing[name], **look.line)
         over.axhline(1.0, color=INK, ls="--", lw=1.2)
         over.axvline(np.sqrt(_SPRING / _INERTIA), color=FAINT, ls=":", lw=1.2)
         over.set(xscale="log", xlabel="frequency, rad/s", ylabel="factor of a trial")

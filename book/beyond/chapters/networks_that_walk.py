@@ -167,13 +167,13 @@ def by_lag() -> figures.Illustration:
 
     def draw(figure):
         left, right = figure.subplots(1, 2, width_ratios=(1, 2))
-        left.bar(age[:3], own[:3], 3.5, color=figures.COLOURS[0])
-        for k, (name, answers) in enumerate(lines.items(), 1):
-            drawn = left.plot(age[:3], answers[:, :3].T, color=figures.COLOURS[k], lw=0.8)
+        left.bar(age[:3], own[:3], 3.5, color=figures.TONES["network"])
+        for name, answers in lines.items():
+            drawn = left.plot(age[:3], answers[:, :3].T, lw=0.8, **figures.looks(lines)[name].line)
             drawn[0].set_label(name)
         figures.legend_above(figure, *left.get_legend_handles_labels())
         left.set(title=f"Go1: {go1:.0f} N m/rad, {delay:.0f} ms late", xticks=age[:3])
-        right.bar(age, memory[:_REACH], 3.5, color=figures.COLOURS[0])
+        right.bar(age, memory[:_REACH], 3.5, color=figures.TONES["network"])
         right.set(title=f"ANYmal: {anymal:.0f} N m/rad, {its_delay:.0f} ms late")
         for axis in (left, right):
             axis.axhline(0, color=figures.INK, lw=0.7)

@@ -13,7 +13,7 @@ from beyond.chapters import real_two_link_arm as swinging
 from beyond.studies.tx40 import Windowed, identified
 from ddlib import paper
 from ddlib.analysis import CLASSES
-from ddlib.figures import COLOURS, FAINT, INK, Illustration, check_label, illustrate, legend_above
+from ddlib.figures import FAINT, INK, Illustration, check_label, illustrate, legend_above, looks
 from ddlib.identification import joint_terms
 from ddlib.learning import p_value
 from ddlib.tables import quote, significant
@@ -54,7 +54,7 @@ def gains_by_joint(panels: dict[str, tuple], label: str, alt: str) -> Illustrati
             for k, gains in enumerate(real):
                 x = place + 0.3 * (k / max(len(real) - 1, 1) - 0.5)
                 name = "real currents" if k == 0 else None
-                axis.plot(x, gains, "o", color=COLOURS[0], ms=3.5, mew=0, alpha=0.8, label=name)
+                axis.plot(x, gains, "o", color=INK, ms=3.5, mew=0, alpha=0.8, label=name)
             axis.set(title=title, xticks=place)
             axis.grid(visible=False, axis="x")
         axes[0].set_ylabel(check_label(label))
@@ -301,9 +301,9 @@ def parts_figure() -> Illustration:
         axis = figure.subplots()
         for turn in turns[turns < _MOVES]:
             axis.axvline(turn, color=FAINT, lw=0.8, ls=":")
-        axis.plot(time, current, color=FAINT, lw=3, label="measured")
-        for k, (name, part) in enumerate(parts.items()):
-            axis.plot(time, part, color=COLOURS[k], lw=1.6, label=name)
+        axis.plot(time, current, color=INK, lw=3, alpha=0.4, label="measured")
+        for name, part in parts.items():
+            axis.plot(time, part, lw=1.6, label=name, **looks(parts)[name].line)
         axis.set(xlabel="time, s", ylabel="current, A", xlim=(0, _MOVES))
         legend_above(figure, *axis.get_legend_handles_labels())
 

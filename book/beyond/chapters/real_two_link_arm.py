@@ -187,15 +187,18 @@ def elbow_figure() -> figures.Illustration:
 
     def draw(figure):
         axis = figure.subplots()
-        looks = {"networks": ("o", 0), "exact": ("D", 2), "nulls": ("_", None)}
+        tones = {
+            "networks": ("o", figures.TONES["network"]),
+            "exact": ("D", figures.COLOURS[1]),
+            "nulls": ("_", figures.FAINT),
+        }
         labels = {"exact": "of known torques", "nulls": "of unrelated torques"}
         for k, design in enumerate(_designs()):
-            for n, (who, (marker, colour)) in enumerate(looks.items()):
+            for n, (who, (marker, colour)) in enumerate(tones.items()):
                 moments = _nulls(design) if who == "nulls" else _read(design, 41, who)
                 place = np.full(len(moments), k + 0.15 * (n - 1))
-                ink = figures.FAINT if colour is None else figures.COLOURS[colour]
                 label = labels.get(who, who) if k == 0 else None
-                axis.plot(place, moments[:, 1, 1, 2], marker, color=ink, ms=4, label=label)
+                axis.plot(place, moments[:, 1, 1, 2], marker, color=colour, ms=4, label=label)
             true = _read(design, 41, "published")[1, 1, 2]
             label = "builders" if k == 0 else None
             axis.hlines(true, k - 0.3, k + 0.3, color=figures.INK, lw=1, label=label)

@@ -80,7 +80,10 @@ def _dots(
         axis.set(xscale="log", ylim=(len(order) - 0.4, -0.6), xlabel=check_label(labels[0]))
         axis.axvline(floor, color=FAINT, ls=":", lw=1.4)
         for k, name in enumerate(order):
-            errors, look = np.asarray(rivals[name][0], float), COLOURS[int(name == marked)]
+            errors, look = (
+                np.asarray(rivals[name][0], float),
+                TONES["network"] if name == marked else INK,
+            )
             axis.plot([errors.min(), errors.max()], [k, k], color=look, lw=1.4)
             axis.plot(np.median(errors), k, "D" if name == marked else "o", color=look, ms=5)
         axis.set_yticks(places, [check_label(name) for name in order])
@@ -174,7 +177,7 @@ def errors_figure() -> Illustration:
 # --- how each rival of 1988 comes from a window to a torque
 
 _WIDTH, _MOMENT = 21, 60  # samples of the window; sample of trajectory 6 that all are asked for
-_SIGNED = LinearSegmentedColormap.from_list("signed", (COLOURS[0], "#d9d9d9", COLOURS[1]))
+_SIGNED = LinearSegmentedColormap.from_list("signed", (COLOURS[2], "#d9d9d9", COLOURS[0]))
 _QUANTITIES = ("1", "q₁", "v₁", "a₁", "q₂", "v₂", "a₂")
 
 
@@ -275,7 +278,7 @@ def _draw_equations(axis: Axes) -> None:
     }
     left = np.cumsum([0.0, *bars.values()])
     rows = np.arange(len(bars) + 1)
-    axis.barh(rows[:-1], list(bars.values()), left=left[:-1], color=COLOURS[2], height=0.6)
+    axis.barh(rows[:-1], list(bars.values()), left=left[:-1], color=FAINT, height=0.6)
     axis.barh(rows[-1], left[-1], color=INK, height=0.6)
     axis.axvline(0, color=FAINT, lw=0.6)
     axis.set(yticks=rows, yticklabels=[*bars, "sum"], xlabel="elbow's torque, N m")
@@ -298,10 +301,10 @@ def _draw_network(axis: Axes) -> None:
         axis.text(x.mean(), -0.03, f"{JOINTS[j]}", ha="center", va="top", fontsize=8.5)
         for unit in units:
             axis.plot([x.mean(), unit], [0.2, 0.52], color=FAINT, lw=0.5, alpha=0.7)
-        axis.plot([x.mean(), 0.5], [0.2, 1.0], color=COLOURS[3], lw=0.9, alpha=0.7)
+        axis.plot([x.mean(), 0.5], [0.2, 1.0], "--", color=TONES["network"], lw=0.9, alpha=0.7)
     for unit, weight in zip(units, out / abs(out).max()):
-        look = dict(color=_SIGNED(0.5 + weight / 2), lw=0.6 + 2 * abs(weight))
-        axis.plot([unit, 0.5], [0.52, 1.0], **look)
+        look = dict(color=TONES["network"], lw=0.6 + 2 * abs(weight))
+        axis.plot([unit, 0.5], [0.52, 1.0], "-" if weight > 0 else ":", **look)
     look = dict(cmap="Greys_r", vmin=-0.1, vmax=1.1, ec=INK, zorder=3)
     axis.scatter(units, np.full(len(units), 0.52), s=70, c=activity, **look)
     axis.plot(0.5, 1.0, "o", color=INK, ms=8)
@@ -345,7 +348,7 @@ def parity_drawn() -> Illustration:
             if abs(corners[a] - corners[b]).sum() == 1:
                 cube.plot(*places[[a, b]].T, color=FAINT, lw=1.0, zorder=1)
         for bits, place, even in zip(corners, places, parity(corners)):
-            look = dict(mfc=COLOURS[1] if even else "none", mec=COLOURS[1], ms=9)
+            look = dict(mfc=INK if even else "none", mec=INK, ms=9)
             cube.plot(*place, "o", **look)
             digits = "".join(map(str, bits))
             side = dict(ha="left", va="bottom") if bits[1] else dict(ha="right", va="top")
@@ -353,8 +356,8 @@ def parity_drawn() -> Illustration:
             cube.annotate(digits, place, shift, textcoords="offset points", **side)
         cube.set(xlim=(-0.5, 1.9), ylim=(-0.4, 1.7), aspect="equal")
         cube.set_axis_off()
-        counts.plot(many, terms, "o-", color=COLOURS[0], ms=4, label="polynomial")
-        counts.plot(many, wired, "s--", color=COLOURS[1], ms=4, label="network")
+        counts.plot(many, terms, "o-", color=INK, ms=4, label="polynomial")
+        counts.plot(many, wired, "s--", color=TONES["network"], ms=4, label="network")
         counts.set(yscale="log", xlabel="bits, number", ylabel="coefficients, number")
         legend_above(figure, *counts.get_legend_handles_labels())
 

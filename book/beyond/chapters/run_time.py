@@ -9,12 +9,12 @@ from beyond.figures import maps
 from beyond.studies.loop import fair_rivals
 from ddlib import paper
 from ddlib.figures import (
-    COLOURS,
     FAINT,
     Illustration,
     check_label,
     illustrate,
     legend_above,
+    looks,
     plain_ticks,
 )
 from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_VISCOUS, STATE_FEEDBACK
@@ -54,7 +54,7 @@ def against(
             axis.set(xscale="log", yscale="log")
             for name, (x, y) in groups.items():
                 k = names.index(name)
-                look = {"color": COLOURS[k % len(COLOURS)], "ms": 4, "mew": 0, "alpha": 0.8}
+                look = {"color": looks(names)[name].colour, "ms": 4, "mew": 0, "alpha": 0.8}
                 (handles[name],) = axis.plot(x, y, _MARKERS[k % len(_MARKERS)], **look)
             if title in equal:
                 both = np.concatenate([np.ravel(values) for values in groups.values()])

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from beyond.studies.loop.feedforwards import exact
-from ddlib.figures import COLOURS, FAINT, Illustration, illustrate, legend_above, plain_ticks
+from ddlib.figures import FAINT, Illustration, illustrate, legend_above, looks, plain_ticks
 from ddlib.setups import JOINT_DAMPING, Setup
 from ddlib.tables import Table, how_many, quote, spread
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, pick_and_place
@@ -38,9 +38,10 @@ def traded_figure() -> Illustration:
         axis.set(xscale="log", yscale="log")
         axis.axvline(nothing[0], color=FAINT, ls="--", lw=1)
         axis.axhline(nothing[1], color=FAINT, ls="--", lw=1)
-        for (name, pair), colour, marker in zip(points.items(), COLOURS, "os^DX"):
-            look = {"color": colour, "ls": "", "ms": 6, "mew": 0, "alpha": 0.85}
-            axis.plot(*pair, marker, label=name, **look)
+        for (name, pair), marker in zip(points.items(), "os^DX"):
+            look = {"color": looks(points)[name].colour, "ls": "", "ms": 6, "alpha": 0.85}
+            hollow = {"mfc": "none"} if marker in "sD" else {"mew": 0}
+            axis.plot(*pair, marker, label=name, **look, **hollow)
         axis.set(xlabel="error of the hand on pick-and-place, mm", ylabel="on circles, mm")
         axis.text(nothing[0] * 0.97, 1.0, "none", color=FAINT, fontsize=8, ha="right")
         axis.text(0.95, nothing[1] * 1.04, "none", color=FAINT, fontsize=8)

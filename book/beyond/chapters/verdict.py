@@ -30,11 +30,11 @@ from workshop.report.measures import filter_trial as trial
 
 # How a bar's parts look, in the order of the words
 _LOOKS = (
-    {"color": COLOURS[2]},
-    {"color": COLOURS[0], "alpha": 0.75},
-    {"facecolor": f"{COLOURS[2]}33", "edgecolor": COLOURS[2], "lw": 1},
     {"color": COLOURS[1]},
-    {"color": COLOURS[3], "alpha": 0.75},
+    {"color": COLOURS[2], "alpha": 0.75},
+    {"facecolor": f"{COLOURS[1]}33", "edgecolor": COLOURS[1], "lw": 1},
+    {"color": COLOURS[0]},
+    {"color": COLOURS[4], "alpha": 0.75},
 )
 
 _DIGIT = 5.4  # Width of a digit in a bar, points

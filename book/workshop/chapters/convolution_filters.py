@@ -11,8 +11,6 @@ from matplotlib.lines import Line2D
 
 from ddlib.analysis import DERIVATIVES, classify, purest, roughness, shares, upright
 from ddlib.figures.style import (
-    COLOURS,
-    DASHES,
     FAINT,
     INK,
     JOINTS,
@@ -20,6 +18,7 @@ from ddlib.figures.style import (
     check_label,
     illustrate,
     legend_above,
+    looks,
 )
 from ddlib.setups import JOINT_DAMPING, split, true_states
 from ddlib.simulation import LOG_STEP
@@ -203,6 +202,8 @@ def against_nulls(
     """Shares of filters under the real torques, as bars, and under nulls, a dot for each draw."""
     classes = list(next(iter(panels.values())))
     rows = -(-len(panels) // 3)
+    order = list(next(iter(next(iter(panels.values())).values())))
+    look = looks(order, {order[0]: "measured"})
 
     def draw(figure: Figure):
         axes = figure.subplots(rows, 3, squeeze=False, sharey=True)
@@ -213,7 +214,7 @@ def against_nulls(
                 axis.plot([np.mean(values)] * 2, [row - 0.43, row + 0.43], color=INK, lw=2.0)
                 for k, (name, draws) in enumerate(nulls):
                     height = row + (k - (len(nulls) - 1) / 2) * 0.26
-                    _dots(axis, draws, height, k, name)
+                    _dots(axis, draws, height, k, name, look[name].colour)
             axis.set(title=title, xlim=(-0.03, 1.03), ylim=(len(groups) - 0.5, -0.5))
             axis.grid(visible=False, axis="y")
         for axis in axes[:, 0]:
@@ -222,21 +223,21 @@ def against_nulls(
             axis.set_xlabel(check_label(label))
         handles, names = axes[0, 0].get_legend_handles_labels()
         first = {name: handle for handle, name in zip(handles[::-1], names[::-1])}
-        order = list(next(iter(next(iter(panels.values())).values())))
         for k, name in enumerate(order[1:]):
-            first[name] = Line2D([], [], ls="", marker="os|"[k % 3], ms=4, color=COLOURS[k])
+            mark = {"marker": "os|"[k % 3], "ms": 4, "color": look[name].colour}
+            first[name] = Line2D([], [], ls="", **mark)
         legend_above(figure, [first[name] for name in order], order)
 
     return illustrate(draw, alt, 7.0, 0.6 + rows * (0.5 + 0.36 * len(classes)))
 
 
-def _dots(axis: Axes, values, height: float, k: int, name: str, colour: str = ""):
+def _dots(axis: Axes, values, height: float, k: int, name: str, colour: str):
     """One mark for each value, all in one path, since hundreds of markers are heavy."""
     at = np.unique(np.asarray(values, dtype=float))
     long = 0.09 if k % 3 == 2 else 1e-3  # discs, squares and strokes
     x, y = np.repeat(at, 3), np.tile([height - long, height + long, np.nan], at.size)
     cap = ("round", "projecting", "butt")[k % 3]
-    axis.plot(x, y, color=colour or COLOURS[k % len(COLOURS)], alpha=0.7,
+    axis.plot(x, y, color=colour, alpha=0.7,
               lw=1.5 if k % 3 == 2 else 3.4,
               solid_capstyle=cap, label=name)  # fmt: skip
 
@@ -254,33 +255,36 @@ def by_explained(
     and the range of nine tenths of the networks, are shown at equal steps.
     """
 
+    (own, *_), *_ = rows.values()
+    tones = looks([name for sets in rows.values() for name in sets] + [*courses], {own: "measured"})
+
     def draw(figure: Figure):
         left, right = figure.subplots(1, 2)
         for height, sets in enumerate(rows.values()):
             (first, values), *others = sets.items()
             mean = np.mean(values)
-            _dots(left, values, height, 0, f"{first}, each network")
+            _dots(left, values, height, 0, f"{first}, each network", INK)
             ends = [height - 0.38, height + 0.38]
             left.plot([mean] * 2, ends, color=INK, lw=2.0, label=f"{first}, mean")
             for k, (name, other) in enumerate(others, 1):
-                look = {"color": COLOURS[k], "mfc": "none", "ms": 4.5, "ls": ""}
+                look = {"color": tones[name].colour, "mfc": "none", "ms": 4.5, "ls": ""}
                 left.plot([np.mean(other)], [height], "sD^"[k % 3], label=f"{name}, mean", **look)
         left.set_yticks(range(len(rows)), list(rows))
         left.grid(visible=False, axis="y")
         left.set(title="By target", xlabel=check_label(labels[0]), ylim=(len(rows) - 0.4, -0.6))
         for k, (name, sets) in enumerate(courses.items(), 2):
             at = np.arange(len(sets)) + 0.1 * (k - 2)
-            look = {"color": COLOURS[k], "marker": "os"[k % 2], "ls": DASHES[k - 2]}
+            look = {"marker": "os"[k % 2], **tones[name].line}
             right.plot(at, [np.mean(x) for x in sets.values()], ms=4, label=name, **look)
             ends = np.transpose([np.quantile(x, (0.05, 0.95)) for x in sets.values()])
-            right.vlines(at, *ends, color=COLOURS[k], lw=1.0)
+            right.vlines(at, *ends, color=tones[name].colour, lw=1.0)
             right.set_xticks(range(len(sets)), list(sets))
         right.set(title="Mixtures", xlabel=check_label(labels[1]), ylabel=labels[0])
         named = {}
         for axis in (left, right):
             handles, names = axis.get_legend_handles_labels()
             named |= dict(zip(names, handles))
-        named[next(iter(named))] = Line2D([], [], ls="", marker="o", ms=4, color=COLOURS[0])
+        named[next(iter(named))] = Line2D([], [], ls="", marker="o", ms=4, color=INK)
         legend_above(figure, list(named.values()), list(named))
 
     return illustrate(draw, alt, 7.0, 3.6, 4.8)

@@ -23,8 +23,6 @@ from ddlib.dynamics import (
     recursive_lagrange,
 )
 from ddlib.figures.style import (
-    COLOURS,
-    DASHES,
     FAINT,
     INK,
     JOINTS,
@@ -32,6 +30,7 @@ from ddlib.figures.style import (
     TONES,
     Illustration,
     illustrate,
+    looks,
 )
 from ddlib.identification import (
     FRICTION,
@@ -128,7 +127,7 @@ def operations(
         axis = figure.subplots()
         axis.axhspan(*band, color=FAINT, alpha=0.16, lw=0)
         for k, (name, by_joints) in enumerate(counts.items()):
-            look = dict(color=(*COLOURS, INK)[k % 7], ls=DASHES[k % len(DASHES)])
+            look = looks(counts)[name].line
             values = [o.multiplications for o in by_joints.values()]
             axis.plot(
                 list(by_joints), values, marker=_MARKERS[k % len(_MARKERS)], label=name, **look
@@ -165,15 +164,12 @@ def estimates(
         for axis, name in zip(axes, names):
             axis.axvline(0.0, color=INK, lw=1)
             for y, (middle, low, high, half, share) in enumerate(shown[name]):
-                colour = COLOURS[y % len(COLOURS)]
                 centre = np.clip(middle, -limit, limit)
                 ends = np.clip([middle - half, middle + half], -limit, limit)
-                axis.plot(ends, [y, y], color=colour, lw=1.2)
-                axis.plot(
-                    np.clip([low, high], -limit, limit), [y, y], color=colour, lw=6, alpha=0.5
-                )
+                axis.plot(ends, [y, y], color=INK, lw=1.2)
+                axis.plot(np.clip([low, high], -limit, limit), [y, y], color=INK, lw=6, alpha=0.4)
                 beyond = "<" if middle < -limit else ">" if middle > limit else "o"
-                axis.plot(centre, y, beyond, color=colour, ms=6, clip_on=False)
+                axis.plot(centre, y, beyond, color=INK, ms=6, clip_on=False)
                 if share is not None:
                     axis.annotate(
                         f"{100 * share:.0f} %", (1.0, y), (3, 0), ("axes fraction", "data"),

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ddlib.analysis import gains, half_penalty, ridge_filters
-from ddlib.figures.style import COLOURS, INK, Illustration, illustrate, legend_above
+from ddlib.figures.style import INK, Illustration, illustrate, legend_above, looks
 from ddlib.learning import TrainingSet
 from ddlib.setups import Setup, split, true_states
 from ddlib.simulation import LOG_STEP, Recording
@@ -111,7 +111,7 @@ def mass_survives(shown: Mapping[str, Sequence], alt: str) -> Illustration:
             axis.axhline(arm, color=INK, ls="--", lw=1.0)
             axis.set(xscale="log", ylim=(-0.5, 9.0))
         for k, (name, row) in enumerate(chosen.items()):
-            style = {"color": COLOURS[k % len(COLOURS)], "ls": ("-", "--")[row["left out"] > 0]}
+            style = {"color": looks(chosen)[name].colour, "ls": ("-", "--")[row["left out"] > 0]}
             left.plot(penalties, np.median(row["ridge"], 0), lw=1.9, **style)
             half = np.median(row["half"])
             left.plot(half, row["arm"] / 2, "D", color=style["color"], mfc="none", ms=6, mew=1.6)

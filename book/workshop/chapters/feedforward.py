@@ -18,7 +18,7 @@ from ddlib.effects import (
     Effects,
     ViscousFriction,
 )
-from ddlib.figures.style import COLOURS, FAINT, INK, NARROW, Illustration, illustrate
+from ddlib.figures.style import FAINT, INK, NARROW, TONES, Illustration, illustrate
 from ddlib.setups import (
     JOINT_DAMPING_COULOMB,
     JOINT_DAMPING_KP,
@@ -69,8 +69,8 @@ def feedforward_loop() -> Illustration:
 def _lying_loop(axis: Axes):
     """The diagram of `feedforward_loop` from left to right."""
     _block(axis, 1.3, 1.1, "reference\ntrajectory")
-    _block(axis, 5.0, 2.75, "inverse arm", colour=COLOURS[1])
-    _block(axis, 5.0, 1.1, "feedback\nat each joint", colour=COLOURS[0])
+    _block(axis, 5.0, 2.75, "inverse arm", colour=TONES["wanted"])
+    _block(axis, 5.0, 1.1, "feedback\nat each joint")
     _block(axis, 9.2, 1.1, "arm")
     _sum(axis, 3.25, 1.1)
     _sum(axis, 7.0, 1.1)
@@ -95,8 +95,8 @@ def _lying_loop(axis: Axes):
 def _standing_loop(axis: Axes):
     """The diagram of `feedforward_loop` from top to bottom, for a narrow page."""
     _block(axis, 1.3, 6.6, "reference\ntrajectory")
-    _block(axis, 4.2, 3.8, "inverse arm", colour=COLOURS[1])
-    _block(axis, 1.3, 3.8, "feedback\nat each joint", colour=COLOURS[0])
+    _block(axis, 4.2, 3.8, "inverse arm", colour=TONES["wanted"])
+    _block(axis, 1.3, 3.8, "feedback\nat each joint")
     _block(axis, 1.3, 0.8, "arm")
     _sum(axis, 1.3, 5.2)
     _sum(axis, 1.3, 2.3)

@@ -11,7 +11,7 @@ from scipy.linalg import orth
 
 from ddlib.analysis import ablation, explained, net_inputs, refitted, saturated, transition_width
 from ddlib.figures import legend_above
-from ddlib.figures.style import COLOURS, DASHES, INK, Illustration, illustrate
+from ddlib.figures.style import COLOURS, DASHES, INK, TONES, Illustration, illustrate
 from ddlib.learning import TrainingSet, cases
 from ddlib.metrics import rmss
 from ddlib.setups import (
@@ -128,8 +128,8 @@ def at_work() -> Illustration:
             for k, activity in enumerate(hidden.T):
                 units.plot(time, activity, DASHES[k // 6], color=COLOURS[k % 6], lw=1.1)
             units.set_title(name)
-            torques.plot(time, wanted, color=INK, lw=0.9, ls="--", label="torque")
-            torques.plot(time, predicted, color=COLOURS[1], label="the network's")
+            torques.plot(time, wanted, color=INK, lw=0.9, label="torque")
+            torques.plot(time, predicted, "--", color=TONES["network"], label="the network's")
             torques.set_xlabel("time, s")
         axes[0, 0].set_ylabel("activity")
         axes[1, 0].set_ylabel("elbow's torque, N m")

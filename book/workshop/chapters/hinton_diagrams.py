@@ -110,10 +110,11 @@ def notch() -> figures.Illustration:
     def draw(figure):
         axes = figure.subplots(1, 2)
         for joint, axis in enumerate(axes):
+            tone = figures.TONES[figures.JOINTS[joint]]
             for gradient in _gradients()[:, joint]:
-                axis.plot(time, gradient, color=figures.COLOURS[0], lw=0.6, alpha=0.5)
+                axis.plot(time, gradient, color=tone, lw=0.6, alpha=0.5)
             median = np.median(_gradients()[:, joint], 0)
-            axis.plot(time[19:22], median[19:22], "o-", color=figures.COLOURS[1], ms=5, lw=1.5)
+            axis.plot(time[19:22], median[19:22], "o-", color=figures.INK, ms=5, lw=1.5)
             axis.set(title=figures.JOINTS[joint], xlabel="time from the window's centre, ms")
         axes[0].set_ylabel("N m/rad")
 

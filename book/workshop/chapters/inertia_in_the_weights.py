@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from ddlib.analysis import gains, mean_gradient
 from ddlib.dynamics import IMI_ARM, with_load
-from ddlib.figures.style import COLOURS, INK, Illustration, illustrate
+from ddlib.figures.style import FAINT, INK, TONES, Illustration, illustrate
 from ddlib.learning import TorqueModel, Weights, cases
 from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, split, true_states
 from ddlib.simulation import LOG_STEP
@@ -139,15 +139,15 @@ def paths_beside() -> Illustration:
     by_path, carried = paths(), _carried()
     names = ["direct", *(f"unit {k}" for k in range(1, len(by_path))), "all"]
     names[carried] += ", the row"
-    colours = [COLOURS[1] if k == carried else COLOURS[0] for k in range(len(by_path))]
+    colours = [TONES["network"] if k == carried else FAINT for k in range(len(by_path))]
     friction = JOINT_DAMPING.effects.friction[0].coefficient[0]
     panels = {"inertia, kg m²": (2, _arm()), "damping, N m s/rad": (1, friction)}
 
     def draw(figure: Figure):
         for axis, (label, (k, arm)) in zip(figure.subplots(1, 2, sharey=True), panels.items()):
             axis.barh(names[:-1], by_path[:, k], color=colours)
-            axis.barh(names[-1:], by_path[:, k].sum(), color=INK)
-            axis.plot([arm] * 2, [len(by_path) - 0.6, len(by_path) + 0.6], color=COLOURS[2], lw=3)
+            axis.barh(names[-1:], by_path[:, k].sum(), color=TONES["network"])
+            axis.plot([arm] * 2, [len(by_path) - 0.6, len(by_path) + 0.6], color=INK, lw=3)
             axis.axvline(0, color=INK, lw=0.8)
             axis.grid(visible=False, axis="y")
             axis.set(xlabel=label, ylim=(len(names) - 0.4, -0.6))

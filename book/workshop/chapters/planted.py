@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 from matplotlib.figure import Figure
 
-from ddlib.figures.style import COLOURS, INK, Illustration, illustrate
+from ddlib.figures.style import FAINT, INK, Illustration, illustrate
 from ddlib.setups import INITIAL, JOINT_DAMPING, SETUPS, STATE_FEEDBACK, WINDOWS
 from ddlib.tables import Table, how_many, quote
 from workshop.report import results
@@ -107,7 +107,7 @@ def shapes_and_sizes() -> Illustration:
         axes = figure.subplots(1, len(panels), sharey=True)
         for axis, (label, (shown, arm)) in zip(axes, panels.items()):
             for k, values in enumerate(shown.values()):
-                colour = INK if k < _WITH_INERTIA else COLOURS[3]
+                colour = INK if k < _WITH_INERTIA else FAINT
                 if arm is None:
                     axis.plot(values, [k, k], color=colour, lw=1)
                     axis.plot(values[:1], [k], "o", color=colour, ms=7)

@@ -72,14 +72,16 @@ def four_starts(unit: int = 0, seed: int = 0) -> figures.Illustration:
         start = Weights.random(1, 21, initial=size, seed=seed)
         rows[size] = [w.hidden_weights[0, unit, 0] for w in (start, model.weights)]
 
+    look = figures.looks(["even part", "odd part"])
+
     def draw(figure):
         axes = figure.subplots(1, len(rows))
         for axis, (size, (before, after)) in zip(axes, rows.items()):
             axis.plot(x, before, color=figures.FAINT, lw=1, label="before training")
             parts = decompose(after)
             axis.plot(x, after, color=figures.INK, lw=2, label="after training")
-            axis.plot(x, parts.even, color=figures.COLOURS[0], ls="--", label="even part")
-            axis.plot(x, parts.odd, color=figures.COLOURS[1], ls="-.", label="odd part")
+            for name, part in {"even part": parts.even, "odd part": parts.odd}.items():
+                axis.plot(x, part, label=name, **look[name].line)
             axis.set(title=f"start: ±{size:g}", xlabel="time, ms")
         axes[0].set_ylabel("weight")
         figures.legend_above(figure, *axes[0].get_legend_handles_labels())
@@ -147,12 +149,12 @@ def by_range() -> figures.Illustration:
     def draw(figure):
         axes = figure.subplots(1, len(_PANELS))
         for axis, (title, measure) in zip(axes, _PANELS.items()):
-            for k, reading in enumerate(SETUPS):
+            for reading in SETUPS:
                 quartiles = [np.quantile(measure(reading, s), (0.25, 0.5, 0.75)) for s in RANGES]
                 low, middle, high = np.transpose(quartiles)
-                look = {"color": figures.COLOURS[k], "label": reading, "marker": "o", "ms": 3}
-                axis.fill_between(RANGES, low, high, color=look["color"], alpha=0.15, lw=0)
-                axis.plot(RANGES, middle, ls=figures.DASHES[k], **look)
+                look = figures.looks(SETUPS)[reading]
+                axis.fill_between(RANGES, low, high, color=look.colour, alpha=0.15, lw=0)
+                axis.plot(RANGES, middle, label=reading, marker="o", ms=3, **look.line)
             axis.set(title=title, xlabel="start, ±", xscale="log")
             axis.set_xticks((0.01, 0.1, 1.0), ("0.01", "0.1", "1"))
             if title in _LOGARITHMIC:
@@ -223,6 +225,7 @@ def p_more(reading: str, size: float, name: str, layer: str = "hidden") -> float
 def beside_unrelated() -> figures.Illustration:
     """Shares of acceleration and of velocity filters, real torques beside unrelated ones."""
     sizes = results.read("start-nulls")["ranges"]
+    tones = figures.looks(_KINDS.values())
 
     def draw(figure):
         axes = figure.subplots(2, len(SETUPS), sharex=True, sharey=True)
@@ -233,9 +236,9 @@ def beside_unrelated() -> figures.Illustration:
                         share = 100 * shares_beside(reading, size, name)[kind]
                         low, middle, high = np.quantile(share, (0.05, 0.5, 0.95))
                         at = i + 0.25 * (k - 1)
-                        axis.plot([at, at], [low, high], color=figures.COLOURS[k], lw=3, alpha=0.4)
+                        axis.plot([at, at], [low, high], color=tones[label].colour, lw=3, alpha=0.4)
                         axis.plot(
-                            at, middle, "os^"[k], color=figures.COLOURS[k], ms=5,
+                            at, middle, "os^"[k], color=tones[label].colour, ms=5,
                             label=label if not i else None,
                         )  # fmt: skip
                 axis.set_xticks(range(len(sizes)), [f"±{size:g}" for size in sizes])

@@ -14,7 +14,7 @@ from scipy.stats import binom
 from ddlib import paper
 from ddlib.analysis import cells_reached, log10_reachable_share, used_dimensions
 from ddlib.control import proportional
-from ddlib.figures.style import COLOURS, FAINT, INK, Illustration, illustrate
+from ddlib.figures.style import FAINT, INK, Illustration, illustrate, looks
 from ddlib.learning import sliding_windows
 from ddlib.paper import TRAINING_TRAJECTORIES
 from ddlib.setups import (
@@ -59,7 +59,9 @@ def reached(states: Mapping[str, np.ndarray], radius: float) -> Illustration:
             for j, (name, x) in enumerate(states.items()):
                 for run, line in enumerate(x[..., 2 * k : 2 * k + 2]):
                     label = name if run == 0 else None
-                    axis.plot(*line.T, color=COLOURS[j], lw=0.6 + 0.5 * j, label=label)
+                    axis.plot(
+                        *line.T, color=looks(states)[name].colour, lw=0.6 + 0.5 * j, label=label
+                    )
             axis.set(xlim=(-edge, edge), ylim=(-edge, edge), aspect="equal", title=title)
             axis.axhline(0, color=FAINT, lw=0.5)
             axis.axvline(0, color=FAINT, lw=0.5)
@@ -81,17 +83,18 @@ def reached(states: Mapping[str, np.ndarray], radius: float) -> Illustration:
 
 def rounding(t, steps, estimates: Mapping[str, np.ndarray]) -> Illustration:
     """Readings of an encoder sample by sample, and accelerations computed from them."""
+    tones = looks(estimates)
 
     def draw(figure: Figure):
         top, bottom = figure.subplots(2, 1, sharex=True)
         top.step(t, steps, where="mid", color=FAINT, lw=0.9)
-        top.plot(t, steps, ".", color=COLOURS[0], ms=5)
+        top.plot(t, steps, ".", color=INK, ms=5)
         top.set_ylabel("angle, encoder steps")
         for k, (name, x) in enumerate(estimates.items()):
             look = dict(ls="", marker=".", ms=5) if k == 0 else dict(lw=2)
-            bottom.plot(t, x, color=COLOURS[k + 1], label=name, **look)
+            bottom.plot(t, x, color=tones[name].colour, label=name, **look)
             if k == 0:
-                bottom.vlines(t, 0, x, color=COLOURS[1], lw=0.7, alpha=0.6)
+                bottom.vlines(t, 0, x, color=tones[name].colour, lw=0.7, alpha=0.6)
         bottom.set(xlabel="time, s", ylabel="acceleration, rad/s²")
         figure.legend(*bottom.get_legend_handles_labels(), loc="outside upper left", ncols=3)
 
@@ -105,7 +108,8 @@ def rounding(t, steps, estimates: Mapping[str, np.ndarray]) -> Illustration:
 
 def tied(panels: Mapping[str, Mapping[str, np.ndarray]]) -> Illustration:
     """Acceleration against position: a line where one follows from the other, a cloud where not."""
-    look = {n: k for k, n in enumerate(dict.fromkeys(n for p in panels.values() for n in p))}
+    first = next(iter(next(iter(panels.values()))))
+    look = looks((name for named in panels.values() for name in named), {first: "measured"})
 
     def draw(figure: Figure):
         axes = figure.subplots(1, len(panels), squeeze=False, sharex=True)[0]
@@ -113,9 +117,9 @@ def tied(panels: Mapping[str, Mapping[str, np.ndarray]]) -> Illustration:
             for place, (name, points) in enumerate(named.items()):
                 q, qdd = np.rad2deg(points[..., 0]), points[..., 1]
                 if place:
-                    k = look[name] - 1
-                    axis.plot(q.ravel(), qdd.ravel(), "os^"[k % 3], color=COLOURS[k], ms=1.6,
-                              mew=0, alpha=0.7, label=name)  # fmt: skip
+                    mark, colour = "os^"[(list(look).index(name) - 1) % 3], look[name].colour
+                    axis.plot(q.ravel(), qdd.ravel(), mark, color=colour, ms=1.6, mew=0, alpha=0.7,
+                              label=name)  # fmt: skip
                 else:
                     lines = axis.plot(q.T, qdd.T, color=INK, lw=1.3, zorder=3)
                     lines[0].set_label(name)

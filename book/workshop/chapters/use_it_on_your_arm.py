@@ -55,7 +55,7 @@ def _drawn(answers) -> figures.Illustration:
         for k, (name, values) in enumerate(answers.items()):
             y = np.stack([values[:, i, j] for i, j in _ENTRIES.values()])
             x = np.broadcast_to(np.arange(3)[:, None] + 0.16 * (k - 1.5), y.shape)
-            look = {"color": figures.COLOURS[k], "marker": "_os^"[k], "ls": ""}
+            look = {"color": figures.looks(answers)[name].colour, "marker": "_os^"[k], "ls": ""}
             size = {"ms": 16, "mew": 3} if name == "the arm" else {"ms": 7}
             axis.plot(x.ravel(), y.ravel(), **look, **size)
             handles += axis.plot([], [], **look, ms=8, mew=2)

@@ -22,8 +22,6 @@ from ddlib.control import difference, end_slope, late_poles, linear, noise_gain,
 from ddlib.control.velocity import EstimatedVelocity
 from ddlib.effects import DeadZone, Effects, FlexibleJoint, Quantisation, Ripple, StribeckFriction
 from ddlib.figures.style import (
-    COLOURS,
-    DASHES,
     FAINT,
     INK,
     JOINTS,
@@ -31,6 +29,7 @@ from ddlib.figures.style import (
     TONES,
     Illustration,
     illustrate,
+    looks,
 )
 from ddlib.paper import TEST_TRAJECTORY
 from ddlib.setups import STATE_FEEDBACK
@@ -51,15 +50,14 @@ def side_by_side(
 ) -> Illustration:
     """Panels in one row, each with axes of its own."""
     shown = [name for panel in panels.values() if len(panel) > 1 for name in panel]
-    look = {name: k for k, name in enumerate(dict.fromkeys(shown))}
+    look = looks(shown)
 
     def draw(figure: Figure):
         axes = figure.subplots(1, len(panels), squeeze=False, sharex=log, sharey=log)[0]
         for axis, ((x_label, y_label), curves) in zip(axes, panels.items()):
             for name, (x, y) in curves.items():
-                k = look.get(name, 0)
-                style = dict(color=COLOURS[k % len(COLOURS)], ls=DASHES[k % len(DASHES)])
-                axis.plot(x, y, label=name, **style)
+                style = look.get(name, looks([name])[name])
+                axis.plot(x, y, label=name, **style.line)
             axis.set(xlabel=x_label, ylabel=y_label)
             if log:
                 axis.set(xscale="log", yscale="log")

@@ -10,7 +10,7 @@ from matplotlib.patches import Rectangle
 
 from ddlib import paper
 from ddlib.analysis import input_shares, shuffled, transition_range
-from ddlib.figures.style import COLOURS, INK, JOINTS, Illustration, illustrate
+from ddlib.figures.style import INK, JOINTS, TONES, Illustration, illustrate
 from ddlib.figures.weights import dots, largest_weight
 from ddlib.learning import TorqueModel, Weights
 from ddlib.metrics import rmss
@@ -94,9 +94,9 @@ def _torque_along(t, exact, predicted) -> Illustration:
     def draw(figure: Figure):
         axes = figure.subplots(exact.shape[1], 1, sharex=True, squeeze=False)[:, 0]
         for j, axis in enumerate(axes):
-            axis.fill_between(t, low[:, j], high[:, j], color=COLOURS[1], alpha=0.25, lw=0,
+            axis.fill_between(t, low[:, j], high[:, j], color=TONES["network"], alpha=0.25, lw=0,
                               label="80 % of the networks")  # fmt: skip
-            axis.plot(t, middle[:, j], color=COLOURS[1], lw=2.4, label="median network")
+            axis.plot(t, middle[:, j], "--", color=TONES["network"], lw=2.0, label="median network")
             axis.plot(t, exact[:, j], color=INK, lw=0.9, label="analytic model")
             axis.set_ylabel(f"{JOINTS[j]} torque, N m")
         figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper left", ncols=3)

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from ddlib.analysis import CLASSES
 from ddlib.dynamics import IMI_ARM
 from ddlib.figures import decomposed
-from ddlib.figures.style import COLOURS, INK, Illustration, illustrate
+from ddlib.figures.style import FAINT, INK, Illustration, illustrate
 from ddlib.learning import (
     MATCHED,
     TrainingSet,
@@ -146,7 +146,7 @@ def of_torques(panels: Mapping[str, Mapping[str, np.ndarray]], arm: float | None
         axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
         for axis, (label, shown) in zip(axes, panels.items()):
             for k, (kind, values) in enumerate(shown.items()):
-                _dots(axis, values, k, 0, kind, colour=COLOURS[min(k, 1)])
+                _dots(axis, values, k, 0, kind, INK if k == 0 else FAINT)
                 axis.plot([np.mean(values)] * 2, [k - 0.3, k + 0.3], color=INK, lw=2)
             axis.grid(visible=False, axis="y")
             axis.set(xlabel=label, ylim=(len(kinds) - 0.5, -0.6))

@@ -10,12 +10,11 @@ from matplotlib.figure import Figure
 from ddlib import paper
 from ddlib.figures.maps import SIGNS, rmss_by_window
 from ddlib.figures.style import (
-    COLOURS,
-    DASHES,
     FAINT,
     Illustration,
     illustrate,
     legend_above,
+    looks,
     plain_ticks,
 )
 from ddlib.learning import (
@@ -130,8 +129,8 @@ def figure_4_1() -> Illustration:
     def draw(figure: Figure):
         axes = figure.subplots(len(panels), 1, sharex=True, sharey=True)
         for axis, (title, both) in zip(axes, panels.items()):
-            for k, (name, y) in enumerate(zip(("measured", "network"), both)):
-                axis.plot(time, y, color=COLOURS[k], ls=DASHES[k], label=name)
+            for (name, look), y in zip(looks(["measured", "network"]).items(), both):
+                axis.plot(time, y, label=name, **look.line)
             axis.set(title=title, ylabel="N m")
         axes[-1].set_xlabel("time, s")
         legend_above(figure, *axes[0].get_legend_handles_labels())
@@ -209,17 +208,18 @@ def unsteady() -> Illustration:
     epochs, errors = _schooled(11, tuple(parts.values()))
     at, steep = _steepest(11)
     bound = 2 * (1 + 0.98)
+    look = looks([*parts, "largest that is stable"])
     quote("window-quarter-end", np.median(errors[-1, 1]))
 
     def draw(figure: Figure):
         left, right = figure.subplots(1, 2)
         for k, name in enumerate(parts):
             for error in errors[:, k].T:
-                left.plot(epochs, error, color=COLOURS[k], lw=0.8, ls=DASHES[k])
-            left.plot([], [], color=COLOURS[k], ls=DASHES[k], label=name)
+                left.plot(epochs, error, lw=0.8, **look[name].line)
+            left.plot([], [], label=name, **look[name].line)
         left.set(xlabel="epoch", ylabel="training RMSS", yscale="log")
-        right.plot(at, steep, color=COLOURS[0])
-        right.axhline(bound, color=COLOURS[3], ls="--", label="largest that is stable")
+        right.plot(at, steep, **look[next(iter(parts))].line)
+        right.axhline(bound, label="largest that is stable", **look["largest that is stable"].line)
         right.set(xlabel="epoch", ylabel="step × curvature", ylim=(0, None))
         plain_ticks(left.yaxis)
         named = [axis.get_legend_handles_labels() for axis in (left, right)]
@@ -367,6 +367,7 @@ def intervals(
 ) -> Illustration:
     """Panels of rows, each with a point and an interval for every series."""
     rows = list(dict.fromkeys(r for series in panels.values() for s in series.values() for r in s))
+    tones = looks(name for series in panels.values() for name in series)
 
     def draw(figure: Figure):
         axes = figure.subplots(1, len(panels), sharex=True, sharey=True, squeeze=False)[0]
@@ -377,8 +378,8 @@ def intervals(
                 offset = (k - (len(series) - 1) / 2) * 0.6 / len(series)
                 for row, (low, middle, high) in points.items():
                     y = rows.index(row) + offset
-                    axis.plot([low, high], [y, y], color=COLOURS[k], lw=1.6)
-                    axis.plot([middle], [y], SIGNS[k], color=COLOURS[k], ms=5, label=name)
+                    axis.plot([low, high], [y, y], color=tones[name].colour, lw=1.6)
+                    axis.plot([middle], [y], SIGNS[k], color=tones[name].colour, ms=5, label=name)
             axis.set_yticks(range(len(rows)), rows)
             axis.set_ylim(len(rows) - 0.5, -0.5)
             axis.set(xlabel=x_label, title=title, xscale="log" if log else "linear")

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddlib._check import finite_array, integer, number, one_of
+from ddlib.figures import TONES, Look, looks
 
 
 @dataclass(frozen=True)
@@ -43,6 +44,8 @@ class Panel:
         that the curves reach on the grid.
     y_fit : bool
         The y axis follows the curves as they stand.
+    roles : mapping, optional
+        Legend name -> role, of names that do not say theirs (`ddlib.figures.looks`).
     limits : pair of float or None, optional
         Values at which curves were cut off, lowest and highest: where a curve lies there, a
         triangle says that it goes on beyond. Lines only.
@@ -60,6 +63,7 @@ class Panel:
     ticks: Sequence[tuple[float, str]] | None = None
     y_range: tuple[float | str, float | str] | None = None
     y_fit: bool = False
+    roles: Mapping[str, str] | None = None
     limits: tuple[float | None, float | None] = (None, None)
 
     def __post_init__(self):
@@ -86,6 +90,8 @@ class Panel:
         if len(cursor) > 2:
             raise ValueError(f"cursor {what} must be one or two names, got {cursor}")
         ticks = [(number(f"ticks {what}", place), str(text)) for place, text in self.ticks or ()]
+        for name, role in (self.roles or {}).items():
+            one_of(f"role of {name!r} {what}", role, tuple(TONES))
         checked = {"curves": legend, "x": x, "fixed": fixed, "cursor": cursor, "ticks": ticks}
         checked["y_range"] = self._checked_range(what)
         checked["limits"] = self._checked_limits(what)
@@ -118,14 +124,22 @@ class Panel:
         """Keys of the function's result that must be single numbers."""
         return [*self.cursor, *(x for x in self.y_range or () if isinstance(x, str))]
 
+    @property
+    def looks(self) -> dict[str, Look]:
+        """How each curve is drawn, by its legend name."""
+        return looks([*self.curves.values(), *self.fixed], self.roles)
+
     def description(self) -> dict:
         """What the page needs to know."""
+        classes = {name: look.classes for name, look in self.looks.items()}
+        plain = {name: value for name, value in vars(self).items() if name != "roles"}
         return {
-            **vars(self),
+            **plain,
             "x": np.round(self.x, 9).tolist(),
-            "curves": [[name, legend] for name, legend in self.curves.items()],
+            "curves": [[name, legend, classes[legend]] for name, legend in self.curves.items()],
             "fixed": [
-                [name, [float(f"{v:.6g}") for v in values]] for name, values in self.fixed.items()
+                [name, [float(f"{v:.6g}") for v in values], classes[name]]
+                for name, values in self.fixed.items()
             ],
             "cursor": list(self.cursor),
             "ticks": [list(tick) for tick in self.ticks],
@@ -211,10 +225,17 @@ class Pad:
     def __post_init__(self):
         number("snap of the pad", self.snap, 0.0, 0.5)
 
+    @property
+    def looks(self) -> dict[str, Look]:
+        """How the marks of each group are drawn."""
+        return looks(mark.group for mark in self.marks)
+
     def description(self) -> dict:
         """What the page needs to know."""
         return {
             **vars(self),
-            "marks": [vars(mark) for mark in self.marks],
+            "marks": [
+                {**vars(mark), "look": self.looks[mark.group].classes} for mark in self.marks
+            ],
             "region": [list(map(float, corner)) for corner in self.region],
         }

@@ -20,7 +20,7 @@ export function sheet(height, label = "") {
   return place;
 }
 
-const TONES = ["ink", "soft", "line", "paper", "shoulder", "elbow", "network", "window", "constant", "even", "odd"];
+const TONES = ["ink", "soft", "line", "paper", "shoulder", "elbow", "network", "window", "constant", "even", "odd", "wanted"];
 
 // The colours of the page, by the names of their variables.
 export function coloursOf(el) {

@@ -1,6 +1,6 @@
 // Draws charts.
 
-import { COLOURS, make, put, short, swatch } from "./elements.js";
+import { make, put, short, swatch } from "./elements.js";
 import { around, format, labels, powerText, ticks } from "./numbers.js";
 import { readerOf, unitOf } from "./reading.js";
 
@@ -80,17 +80,18 @@ export function chart(view, panel) {
   const standing = kind !== "line"; // on zero
   const log = panel.y_scale === "log";
   const ranges = panel.curves.map(([name]) => view.spec.curves.find((c) => c.name === name));
-  const fixed = panel.fixed.map(([legend, values], k) => ({
+  const fixed = panel.fixed.map(([legend, values, look], k) => ({
     legend,
     values,
+    look,
     k: ranges.length + k,
     kind: kind === "stems" ? "line" : kind,
   }));
-  const moving = panel.curves.map(([name, legend], k) => ({ name, legend, k, kind }));
+  const moving = panel.curves.map(([name, legend, look], k) => ({ name, legend, look, k, kind }));
   const curves = [...moving, ...fixed];
   for (const curve of curves) {
     const classes = { line: ["curve"], stems: ["curve stem", "curve dots"], bars: ["curve bar"] };
-    curve.paths = classes[curve.kind].map((c) => make("path", { class: `${c} c${curve.k % COLOURS}` }));
+    curve.paths = classes[curve.kind].map((c) => make("path", { class: `${c} ${curve.look}` }));
   }
 
   // Triangles where a curve was cut off and goes on beyond: they lie on its end of the range.
@@ -98,7 +99,7 @@ export function chart(view, panel) {
   const near = 1e-3 * (most !== null && least !== null ? most - least : Math.abs(most ?? least ?? 0));
   const beyond = (v) => (most !== null && v > most - near) - (least !== null && v < least + near);
   const cut = least !== null || most !== null ? moving : [];
-  for (const curve of cut) curve.beyond = make("path", { class: `beyond c${curve.k % COLOURS}` });
+  for (const curve of cut) curve.beyond = make("path", { class: `beyond ${curve.look}` });
 
   const clip = make("rect", {});
   const clipId = `${view.id}-clip${(view.clips = (view.clips ?? 0) + 1)}`;
@@ -112,7 +113,7 @@ export function chart(view, panel) {
   const svg = make("svg", { role: "img", tabindex: 0, "data-y": panel.y_scale }, defs, span, grid, cursor, ...paths, ...beyonds);
   const legend = make("div", { class: "legend" });
   for (const curve of curves) {
-    curve.label = make("span", {}, swatch(curve.kind, curve.k), curve.legend);
+    curve.label = make("span", {}, swatch(curve.kind, curve.look), curve.legend);
     if (curves.length > 1) legend.append(curve.label);
   }
   const title = make("div", { class: "title" }, panel.y_label);

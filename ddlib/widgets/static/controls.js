@@ -98,7 +98,8 @@ export function padOf(view) {
   const groups = [...new Set(pad.marks.map((mark) => mark.group))];
   const shape = (group) => {
     const k = groups.indexOf(group);
-    return { d: SHAPES[k % SHAPES.length], class: `mark c${k % SHAPES.length}` };
+    const { look } = pad.marks.find((mark) => mark.group === group);
+    return { d: SHAPES[k % SHAPES.length], class: `mark ${look}` };
   };
   const under = make("g", { class: "under" }); // for a subclass
   const handle = make("g", { class: "handle" }, make("circle", { r: 10 }), make("circle", { r: 2 }));

@@ -30,11 +30,8 @@ export function tableOf(caption, heads, rows) {
   return make("table", {}, make("caption", {}, caption), make("thead", {}, cells("th", heads)), body);
 }
 
-export const COLOURS = 6; // classes c0 to c5
-
-// The sample of a line, stem or bar in a legend.
-export function swatch(kind, k) {
-  const c = `c${k % COLOURS}`;
+// The sample of a line, stem or bar in a legend; `c` are classes of its colour and its dash.
+export function swatch(kind, c) {
   const samples = {
     line: [{ class: `curve ${c}`, d: "M0 5H26" }],
     stems: [{ class: `curve stem ${c}`, d: "M13 10V2" }, { class: `curve dots ${c}`, d: "M13 3h0" }],

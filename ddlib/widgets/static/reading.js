@@ -1,7 +1,7 @@
 // Values of a chart: at the sample nearest to the pointer, or with focus at one that the arrow keys
 // choose.
 
-import { COLOURS, make, onKeys, put, short, swatch, write } from "./elements.js";
+import { make, onKeys, put, short, swatch, write } from "./elements.js";
 import { format, powerText } from "./numbers.js";
 
 // A label such as "time, s" as a quantity and what follows a number.
@@ -17,13 +17,13 @@ export function readerOf(plot) {
   const { el, svg, panel, curves } = plot;
   const [quantity, unit] = unitOf(panel.x_label);
   const [low, high] = [panel.x[0], panel.x.at(-1)];
-  const dots = curves.map(({ k }) => make("circle", { class: `c${k % COLOURS}`, r: 4 }));
+  const dots = curves.map(({ look }) => make("circle", { class: look, r: 4 }));
   const line = make("line", {});
   const marks = make("g", { class: "reading", visibility: "hidden", "aria-hidden": "true" }, line, ...dots);
   const where = make("div", { class: "where" });
   const outputs = curves.map(() => make("b"));
   const labels = curves.map(() => make("span"));
-  const rows = curves.map((curve, i) => make("div", {}, swatch(curve.kind, curve.k), labels[i], outputs[i]));
+  const rows = curves.map((curve, i) => make("div", {}, swatch(curve.kind, curve.look), labels[i], outputs[i]));
   const box = make("div", { class: "readout", "aria-hidden": "true", hidden: "" }, where, ...rows);
   svg.append(marks);
   el.append(box);

@@ -385,8 +385,7 @@ function build({ model, el }) {
   const drawn = spec.panels.map((panel) => chart(view, panel));
   const runs = make("div", { class: "runs", hidden: "" });
   const history = [];
-  const key = NAMES.map((name, j) => make("span", {}, swatch("line", j ? 2 : 0), `${name}'s window`));
-  key[1].querySelector("path").setAttribute("stroke-dasharray", "5 3");
+  const key = NAMES.map((name, j) => make("span", {}, swatch("line", `${name} d${j}`), `${name}'s window`));
   const letters = make("span", {}, "bold: has a name (a acceleration, v velocity, j jerk)");
   const hands = make("div", { class: "hands" }, make("div", { class: "buttons" }, play, once, anew), status, weighed, list);
   el.replaceChildren(

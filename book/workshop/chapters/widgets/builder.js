@@ -105,9 +105,9 @@ function windowOf({ width, most, period }, { stems: heights, change }) {
       put(stem, { "aria-valuenow": value, "aria-valuetext": MINUS(value) });
     });
     over.replaceChildren(
-      ...ghosts.map(([k, f]) => {
+      ...ghosts.map(([look, f]) => {
         const points = f.map((v, i) => `${short(x(i))},${short(y(v))}`).join(" ");
-        return make("polyline", { class: `curve c${k}`, points });
+        return make("polyline", { class: `curve ${look}`, points });
       }),
     );
   }
@@ -324,7 +324,7 @@ function build({ model, el }) {
       compared
         ? shown.map((rival, k) => {
             const tallest = Math.max(...rival.f.map(Math.abs));
-            return [k + 2, rival.f.map((v) => (0.9 * most * v) / tallest)];
+            return [spec.panels[0].curves[k + 2][2], rival.f.map((v) => (0.9 * most * v) / tallest)];
           })
         : [],
     );

@@ -135,10 +135,13 @@ class FilterBuilder(PageWidget):
             return {f"own {what}": "yours", aim: label, **others}
 
         output, gain = curves("output", "truth", "true"), curves("gain", "ideal", "ideal, (2πν)²")
+        own = {"yours": "network", "a trained unit": "network", "least squares": "before"}
+        roles = {"roles": own}
         panels = [
-            Panel("Acceleration, rad/s²", output, "time, s", time, y_range=(-most, most)),
-            Panel("Gain, 1/s²", gain, "frequency, Hz", _FREQUENCIES, "log", "log", y_range=_GAINS),
-        ]
+            Panel("Acceleration, rad/s²", output, "time, s", time, y_range=(-most, most), **roles),
+            Panel("Gain, 1/s²", gain, "frequency, Hz", _FREQUENCIES, "log", "log", y_range=_GAINS,
+                  **roles),
+        ]  # fmt: skip
         spec = {
             "title": "Draw a filter by hand: measure acceleration",
             "hint": _HINT,
@@ -183,14 +186,15 @@ def _still(time, truth, setup) -> tuple[str, str]:
     panels = [
         Panel(
             "Weights", {"weights": name}, "time from the centre, ms",
-            np.linspace(-half, half, _WIDTH), kind="stems",
+            np.linspace(-half, half, _WIDTH), kind="stems", roles={name: "network"},
         ),
         Panel(
-            "Acceleration, rad/s²", {"output": "filter"}, "time, s", time, fixed={"true": truth}
+            "Acceleration, rad/s²", {"output": "filter"}, "time, s", time, fixed={"true": truth},
+            roles={"filter": "network"},
         ),
         Panel(
             "Gain, 1/s²", {"gain": "filter"}, "frequency, Hz", _FREQUENCIES, "log", "log",
-            fixed=ideal, y_range=_GAINS,
+            fixed=ideal, y_range=_GAINS, roles={"filter": "network"},
         ),
     ]  # fmt: skip
     alt = (

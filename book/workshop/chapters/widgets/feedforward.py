@@ -85,6 +85,7 @@ class FeedforwardSwitches(CurveWidget):
                     "time, s",
                     _TIMES,
                     y_fit=True,
+                    roles={"feedback alone": "before", "your setting": "shoulder"},
                 ),
                 Panel(
                     "Shoulder torque, N m",
@@ -92,6 +93,7 @@ class FeedforwardSwitches(CurveWidget):
                     "time, s",
                     _TIMES,
                     y_fit=True,
+                    roles={"by the model": "wanted", "by feedback": "measured"},
                 ),
             ],
             live=Live(examples=[{"model": True}, {"feedback": False}]),

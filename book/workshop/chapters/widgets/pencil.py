@@ -49,6 +49,7 @@ class TurnTheParabola(CurveWidget):
                 {f"{name}_{joint}": legend for name, legend in lines.items()},
                 "time, s",
                 t,
+                roles={lines["needed"]: "wanted"},
             )
             for joint in _JOINTS
         ]
@@ -66,6 +67,7 @@ class TurnTheParabola(CurveWidget):
                     _time(width),
                     kind="stems",
                     y_range=("lowest", "highest"),
+                    roles={"row": "network"},
                 ),
                 *torques,
             ],
@@ -122,7 +124,14 @@ class WriteTheLoad(CurveWidget):
         t, lines = LOG_STEP * np.arange(cases)[::_EVERY], ("loaded", "trained", "written")
         legends = dict(zip(lines, ("the loaded arm", "as trained", "written")))
         rows = [
-            Panel(f"{a} to {b}", f"row_{a}_{b}", CENTRE, _time(width), kind="stems")
+            Panel(
+                f"{a} to {b}",
+                f"row_{a}_{b}",
+                CENTRE,
+                _time(width),
+                kind="stems",
+                roles={f"row_{a}_{b}": "network"},
+            )
             for b in _JOINTS
             for a in _JOINTS
         ]
@@ -132,6 +141,7 @@ class WriteTheLoad(CurveWidget):
                 {f"{line}_{joint}": legends[line] for line in lines},
                 "time, s",
                 t,
+                roles=dict(zip(legends.values(), ("measured", "before", "network"))),
             )
             for joint in _JOINTS
         ]

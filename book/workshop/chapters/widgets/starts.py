@@ -42,7 +42,7 @@ class UnitFromFiveStarts(CurveWidget):
             [
                 Panel(
                     "Weights", {"after": "after training", "before": "before training"},
-                    CENTRE, time, y_fit=True,
+                    CENTRE, time, y_fit=True, roles={"after training": "network"},
                 ),
                 Panel(
                     "Parts, after training", {"even": "even", "odd": "odd", "constant": "constant"},

@@ -96,9 +96,9 @@ extras.push((view) => {
   const rows = new Map(
     terms.map((name) => {
       const head = make("th", { scope: "row" }, make("span", {}, name));
-      const k = terms.indexOf(name);
-      head.prepend(swatch("line", k));
-      const cells = NAMES.map(() => ({ now: make("td", {}), bar: make("span", { class: `bar-of c${k}` }), rms: make("td", {}) }));
+      const [, , look] = spec.panels[0].curves[terms.indexOf(name)];
+      head.prepend(swatch("line", look));
+      const cells = NAMES.map(() => ({ now: make("td", {}), bar: make("span", { class: `bar-of ${look}` }), rms: make("td", {}) }));
       const text = cells.map(({ now, bar }) => now.appendChild(make("span", {})) && (now.append(make("span", { class: "lane" }, bar)), now.firstChild));
       const el = make("tr", {}, head, ...cells.flatMap(({ now, rms }) => [now, rms]));
       return [name, { el, name: head.lastChild, cells, text }];
@@ -169,6 +169,7 @@ extras.push((view) => {
     write(verdict, answer());
     if (stage === shown) return;
     shown = stage;
+    view.el.classList.toggle("named", stage > 0);
     const choose = [
       ["inertial", "coupling", "centrifugal", "Coriolis"].map((name) => [name, () => set(name, "")]),
       BETS.map((bet) => [bet, () => { set(first, bet); view.set({ doubled: true }); }]),

@@ -77,6 +77,7 @@ class TorqueTerms(CurveWidget):
                     "part of the motion, %",
                     _DONE,
                     y_fit=True,
+                    roles={_FRICTION: "odd", _BEFORE: "before"},
                 )
                 for joint in JOINTS
             ],

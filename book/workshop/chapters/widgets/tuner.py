@@ -226,6 +226,7 @@ class PIDTuner(CurveWidget):
                     "time, s",
                     _TIMES,
                     y_fit=True,
+                    roles={"now": joint},
                 )
                 for what, unit in (("error", "°"), ("torque", "N m"))
                 for joint in JOINTS

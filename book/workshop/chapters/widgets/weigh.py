@@ -56,7 +56,7 @@ class WeighTheArm(CurveWidget):
                 ),
                 Panel(
                     "Each sample adds ½ x² g, kg m²", "parts", CENTRE, time, kind="bars",
-                    y_fit=True, **shade,
+                    y_fit=True, roles={"parts": "network"}, **shade,
                 ),
                 Panel(
                     "Sum so far, kg m²",

@@ -52,7 +52,7 @@ function drawnUnit() {
     make("text", { class: "mid", x: 24, y: 66 }, "1"),
     make("text", { class: "mid", x: 24, y: 96 }, "input"),
     make("circle", { class: "body", cx: 152, cy: 62, r: 24 }),
-    make("path", { class: "curve c2", d: "M138 72C150 72 154 52 166 52" }),
+    make("path", { class: "curve network", d: "M138 72C150 72 154 52 166 52" }),
     make("text", { class: "mid", x: 152, y: 106 }, "unit"),
     make("rect", { class: "gauge", x: 236, y: top, width: 22, height }),
     fill,

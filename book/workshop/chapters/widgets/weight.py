@@ -47,6 +47,7 @@ class OneWeight(CurveWidget):
                     fixed={"wanted": np.full(_WEIGHTS.size, WANTED)},
                     cursor="at",
                     y_range=(0.0, 1.0),
+                    roles={"answer": "network"},
                 ),
             ],
             title="One weight",

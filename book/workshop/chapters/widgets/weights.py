@@ -97,6 +97,7 @@ class WeightReader(_HintonWidget):
                     time,
                     kind="stems",
                     y_range=("lowest", "highest"),
+                    roles={"weight": "network"},
                 )
             ],
             title="Read the weights",

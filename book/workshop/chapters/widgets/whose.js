@@ -9,8 +9,8 @@ const COLUMNS = 5;
 const [WIDE, HIGH, GAP] = [60, 44, 6]; // of a filter's field, and what it leaves free
 
 // Which colour a filter has once the answer is there.
-const KINDS = { acceleration: "c0", velocity: "c1", "velocity + acceleration": "c2", "not analysable": "none" };
-const kindOf = (name) => KINDS[name] ?? "c3";
+const KINDS = { acceleration: "even", velocity: "odd", "velocity + acceleration": "c0", "not analysable": "none" };
+const kindOf = (name) => KINDS[name] ?? "c2";
 const calledOf = (name) => (name === "not analysable" ? "without a name" : name);
 
 // A row of weights as a curve in its field, as high as its own largest weight.

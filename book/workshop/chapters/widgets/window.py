@@ -94,6 +94,7 @@ class SlidingWindow(CurveWidget):
                     kind="bars",
                     ticks=list(enumerate(units)),
                     y_range=(0.0, 1.0),
+                    roles={"activity": "network"},
                 ),
                 *(
                     Panel(
@@ -179,7 +180,7 @@ class HiddenTorque(CurveWidget):
         start = {"joint": JOINTS[0], "sample": len(self._time) // 5, "shown": False}
         around = np.arange(-self._half, self._half + 1) * self._step * 1e3
         span = {"x_label": "time, s", "x": self._time, "cursor": ("from", "to")}
-        inside = {"inside": "position", "chord": "straight line"}
+        inside = {"inside": "position", "chord": "straight across"}
         super().__init__(
             self._curves,
             [
@@ -195,7 +196,14 @@ class HiddenTorque(CurveWidget):
             ],
             [
                 Panel("Position, °", {"position": "position"}, **span, y_fit=True),
-                Panel("In the window, °", inside, "time from its middle, ms", around, y_fit=True),
+                Panel(
+                    "In the window, °",
+                    inside,
+                    "time from its middle, ms",
+                    around,
+                    y_fit=True,
+                    roles={"straight across": "before"},
+                ),
                 Panel("Torque, N m", {"torque": "torque"}, **span, y_range=("low", "high")),
             ],
             title="Hidden torque",
