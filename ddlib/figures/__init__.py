@@ -2,6 +2,7 @@
 
 - ``style``: the figure style: colours, fonts, light and dark, SVG with an alternative text
 - ``lines``, ``maps``: curves and points over one axis; values over a plane
+- ``loops``: poles and Bode plots of feedback loops
 - ``weights``: networks, Hinton diagrams, filters taken apart
 """
 

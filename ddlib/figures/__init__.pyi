@@ -5,6 +5,7 @@ from .lines import (
     dots_in_one as dots_in_one,
     families as families,
 )
+from .loops import poles_and_bode as poles_and_bode
 from .maps import (
     COLOUR_MAP as COLOUR_MAP,
     rmss_by_window as rmss_by_window,

@@ -6,6 +6,7 @@ A figure that is tested in a module of its own need not stand here: `pictures.ch
 import re
 from functools import cache, partial
 
+import control
 import numpy as np
 import pytest
 from matplotlib.collections import QuadMesh
@@ -41,6 +42,8 @@ RNG = np.random.default_rng(3)
 LABELS = "motions, number", "error, mm"
 X = np.linspace(1.0, 10.0, 6)
 T = np.linspace(0.0, 3.0, 50)
+W = np.geomspace(1 / 8, 25, 400)
+GAIN = W * np.hypot(W, 2) / 5  # one over that of 5 / (s² + 2 s)
 
 # Shared by chapters
 SPIKED = LoggedRun(
@@ -151,6 +154,12 @@ FIGURES = {
     "by_case": figure(
         partial(shared.by_case, X, CASES, "time, s", "error, °", "Three swings."),
         shows=[xy(X, case) for case in CASES.values()],
+    ),
+    "poles_and_bode": figure(
+        partial(
+            shared.poles_and_bode, {"one": control.tf(5, [1, 2, 0])}, "One loop.", decay=1.0
+        ),
+        shows=[[np.array([[-1.0, 2.0], [-1.0, -2.0]])], [xy(W, -20 * np.log10(GAIN))[0]]], log=None,
     ),
     "rmss_by_window": figure(partial(shared.rmss_by_window, TABLE, PRINTED), log="y"),
     "network_diagram": figure(lambda: shared.network_diagram(Weights.random(1, 21)[0])),

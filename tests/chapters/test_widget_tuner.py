@@ -186,6 +186,26 @@ def test_drag_keys_and_the_ghost(page_with, tuner):
     assert "stable" in page.locator(".verdict").inner_text()
 
 
+@pytest.mark.browser
+def test_a_slow_drag_and_a_quick_click_begin_once(page_with, tuner):
+    """The ghost is where the hand took hold, however long it rests on the way."""
+    page = page_with(tuner, calm=True)
+    box = page.locator("input[id$=-kp]").bounding_box()
+    middle = box["y"] + box["height"] / 2
+    page.mouse.move(box["x"] + 0.56 * box["width"], middle)
+    page.mouse.down()
+    for place in (0.65, 0.75):
+        page.mouse.move(box["x"] + place * box["width"], middle, steps=3)
+        page.wait_for_timeout(1000)
+    page.mouse.up()
+    page.evaluate(NEXT_FRAME)
+    assert page.evaluate(SEEN)["before"] == START
+    kp = value_of(page, tuner, "kp")
+    page.locator("input[id$=-dry]").click()
+    page.evaluate(NEXT_FRAME)
+    assert page.evaluate(SEEN)["before"] == {**START, "kp": pytest.approx(kp)}
+
+
 DISTURBED = [
     {"kd": 60.0, "ki": 1500.0, "load": True, "dry": True},
     {"kd": 60.0, "ki": 1500.0, "load": True, "limit": "yes"},

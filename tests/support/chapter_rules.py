@@ -157,8 +157,9 @@ def is_check(cell) -> bool:
 
 def words(notebook) -> int:
     """Words of the prose; a formula, a number or a link in the text is one, a display none."""
-    text = re.sub(r"^\$\$.*?^\$\$.*?$|<[^>]+>", " ", prose(notebook), flags=re.M | re.S)
+    text = re.sub(r"^\$\$.*?^\$\$.*?$", " ", prose(notebook), flags=re.M | re.S)
     text = re.sub(r"\$[^$]+\$|\{[\w:-]+\}`[^`]*`|`[^`]*`", "x", text)
+    text = re.sub(r"<[^>]+>", " ", text)  # tags; by now no formula has a < in it
     return len(re.findall(r"[\w'’-]*\w", text))
 
 

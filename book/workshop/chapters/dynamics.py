@@ -54,12 +54,13 @@ _TIMES = np.arange(300) * 0.01
 
 
 def _quoted() -> None:
-    """What gears hide, what a recursion saves, and what Bejczy's simplification loses."""
+    """What gears hide, what recursion and simplification save, and what the latter loses."""
     motion = pick_and_place(APPENDIX_I[0], _TIMES)
     share = 100 * share_of_other_joint(ARM, motion, [1.0, 100.0], PUMA_560_ROTORS[0])[:, 1]
     quote("dynamics-gear-direct", share[0])
     quote("dynamics-gear-hundred", share[1])
     quote("dynamics-recursion", recursion().value)
+    quote("dynamics-cheap", 100 * ignoring_terms().value)
     driven = pick_and_place(APPENDIX_I[[0, 1, 2, 5]], _TIMES)
     lost = 100 * share_of_velocity_terms(ARM, driven, effects=JOINT_DAMPING.effects)
     for joint, share in zip(JOINTS, lost):

@@ -15,12 +15,11 @@ from ddlib.tables import quote, significant
 from ddlib.trajectories import APPENDIX_I
 from workshop.chapters.exercises import Exercise, OneOf, judging
 from workshop.chapters.feedforward import _errors, _geared, _rms
-from workshop.chapters.widgets.tuner import PIDTuner
 from workshop.report.evidence.verdicts import Measured
 
 
 def _quoted() -> None:
-    """The numbers of the lesson: a limit of the whole arm, and what the tuner's sliders change."""
+    """How stiff the shoulder's spring may be alone, as a multiple of its own limit."""
     joints = linear.plant(CMU_DD_ARM_II.mass_matrix([0.0, 0.0]), VISCOUS)
 
     def growth(times):
@@ -30,14 +29,6 @@ def _quoted() -> None:
 
     rule = 2 * VISCOUS[0] / CONTROL_STEP  # N m/rad
     quote("pid-alone", KP[0] / rule * brentq(growth, 1.0, 40.0))
-    tuner = PIDTuner()
-    moves = {"base": {}, "damped": {"kd": 60}, "ahead": {"kd": 60, "feedforward": True}}
-    times = np.array(tuner.spec["panels"][0]["x"])
-    late = (times >= 1) & (times < 3)
-    for name, move in moves.items():
-        seen = tuner.curves_at(**move)
-        quote(f"pid-tune-margin-{name}", seen["shoulder phase margin"][0])
-        quote(f"pid-tune-late-{name}", np.sqrt((seen["shoulder error"][late] ** 2).mean()))
 
 
 def _exercise(number: int, inertia: float, friction: float, period: float) -> Exercise:

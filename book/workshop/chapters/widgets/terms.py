@@ -88,7 +88,7 @@ class TorqueTerms(CurveWidget):
                 "torque is the largest, at the elbow the coupling torque."
             ),
             scalars=[
-                Scalar(f"{joint} ratio", f"Speed terms over acceleration terms, {joint}", "%", 1)
+                Scalar(f"{joint} ratio", f"Speed over acceleration terms, {joint}", "%", 1)
                 for joint in JOINTS
             ],
             live=Live(

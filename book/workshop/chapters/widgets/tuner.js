@@ -7,7 +7,7 @@ import { JOINTS, NAMES, behind, feedforward, pid, referenceOf } from "ddlib/engi
 import { calmPart, growthOf, guarded, marginOf } from "./loops.js";
 import { armsOf } from "./stage.js";
 
-const PAUSE = 800; // ms without a change after which a setting is the one before the next
+const PAUSE = 800; // ms without a change of keys after which a setting is the one before the next
 const THOUGHT = 250; // ms without a change after which it is sought what would make a loop stable
 const BODE = "fig-pid-bode"; // figure of the chapter that explains margins
 
@@ -61,8 +61,10 @@ computes((view) => {
   const now = view.tuned(setting);
   if (view.now && view.now !== now && !view.keeps) {
     const time = performance.now();
-    if (!(time - view.changed < PAUSE)) model.set("before", view.now.setting);
+    const begins = view.grip ? view.grip === "fresh" : !(time - view.changed < PAUSE);
+    if (begins) model.set("before", view.now.setting); // where a drag or a run of keys began
     view.changed = time;
+    if (view.grip) view.grip = "moved";
   }
   view.keeps = false;
   view.now = now;
@@ -95,7 +97,7 @@ extras.push((view) => {
   const clock = clockOf(view, { at: 1, end, step: loop.step * loop.every }, draw, () => (over ? ", stopped" : ""));
   const verdict = make("p", { class: "verdict", role: "status" });
   const remedy = make("p", { class: "remedy", role: "status" });
-  const chapter = "How close to instability?";
+  const chapter = "Poles and margins";
   const figure = document.getElementById(BODE)
     ? make("a", { href: `#${BODE}` }, `the Bode plot under “${chapter}”`)
     : `the Bode plot in the lesson Feedback, under “${chapter}”`;
@@ -109,8 +111,19 @@ extras.push((view) => {
   const legend = make("div", { class: "legend" });
   legend.append(key("now", "now"), key("ghost", "your previous setting"), key("wanted", "wanted"));
   const row = make("div", { class: "time" }, clock.play, clock.el);
-  view.top.append(make("div", { class: "told-so" }, verdict, remedy, pointer));
-  view.top.append(make("div", { class: "scene" }, stage.svg, legend, row));
+  const errors = make("div", { class: "charts errors" }, ...view.charts.slice(0, 2).map((c) => c.el));
+  const more = make("div", { class: "controls more" }, ...view.controls.querySelectorAll(".switch, .menu"));
+  const told = make("div", { class: "told-so" }, verdict, remedy, pointer);
+  view.top.append(errors, more, make("div", { class: "scene" }, stage.svg, legend, row), told);
+
+  // A drag, however slow, has one setting before it.
+  const grasp = () => (view.grip = "fresh");
+  const letGo = () => {
+    if (view.grip === "fresh") view.changed = -Infinity; // a click changes after it
+    view.grip = null;
+  };
+  view.top.addEventListener("pointerdown", grasp);
+  for (const end of ["pointerup", "pointercancel"]) addEventListener(end, letGo);
 
   let over = false; // whether the run was stopped before
   const along = (list, k) => {
@@ -206,6 +219,7 @@ extras.push((view) => {
     clock.pause();
     clearTimeout(thinking);
     model.off("change:before", redraw);
+    for (const end of ["pointerup", "pointercancel"]) removeEventListener(end, letGo);
   };
 });
 
