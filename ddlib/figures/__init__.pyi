@@ -1,6 +1,7 @@
 from .checked import checked as checked
 from .lines import (
     by_case as by_case,
+    clouds as clouds,
     curves as curves,
     dots_in_one as dots_in_one,
     families as families,

@@ -17,6 +17,7 @@ from matplotlib.path import Path
 from ddlib._check import flag, integer, mapping, number, shaped, text, texts
 from ddlib.figures.style import (
     INK,
+    TONES,
     Illustration,
     check_label,
     illustrate,
@@ -179,6 +180,50 @@ def dots_in_one(axis: Axes, places: np.ndarray, **look) -> None:
     path = Path(np.repeat(places, 2, axis=0), [Path.MOVETO, Path.LINETO] * len(places))
     path.should_simplify = False
     axis.add_patch(PathPatch(path, fill=False, capstyle="round", **look))
+
+
+def clouds(
+    panels: Mapping[str, tuple], labels: tuple[str, str], alt: str, *, slope: float | None = None
+) -> Illustration:
+    """Two quantities as dots, a panel for each case, side by side on common axes.
+
+    Parameters
+    ----------
+    panels : mapping
+        ``{panel title: (x, y)}``, each of shape (points,).
+    labels : tuple of str
+        Labels of the x and y axes, each a quantity with its unit.
+    alt : str
+        Alternative text.
+    slope : float, optional
+        Of a dashed line through zero, below the dots' whole range: what is wanted of them.
+
+    Raises
+    ------
+    ValueError
+        If there is no panel, or shapes do not fit.
+    """
+    mapping("panels", panels)
+    texts("labels", labels, 2)
+    text("alt", alt)
+    if slope is not None:
+        number("slope", slope)
+    for name, (x, y) in panels.items():
+        shaped(f"y of {name!r}", y, f"({len(shaped(f'x of {name!r}', x, '(points,)'))},)")
+    across = np.concatenate([x for x, _ in panels.values()])
+    ends = np.array([across.min(), across.max()])
+
+    def draw(figure: Figure):
+        axes = figure.subplots(1, len(panels), sharex=True, sharey=True, squeeze=False)[0]
+        for axis, (title, pair) in zip(axes, panels.items()):
+            dots_in_one(axis, np.stack(pair, -1), color=TONES["shoulder"], lw=2.0)
+            if slope is not None:
+                axis.plot(ends, slope * ends, "--", color=TONES["wanted"], lw=1.5)
+            axis.autoscale_view()
+            axis.set(title=title, xlabel=check_label(labels[0]))
+        axes[0].set_ylabel(check_label(labels[1]))
+
+    return illustrate(draw, alt, 7.0, 2.1)
 
 
 def by_case(

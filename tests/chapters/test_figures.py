@@ -53,6 +53,7 @@ SPIKED = LoggedRun(
 FAN = X[:, None] * [1.0, 2.0, 4.0, 7.0]
 CURVES = {"q, rad": {"one": X, "two": X**2}, "error": {"two": (X[1:], 1 / X[1:])}}
 CASES = {"small swing": np.sin(X), "large swing": 3 * np.sin(X), "none": 0 * X}
+CLOUDS = {"a line": (X, 3 * X), "a bend": (X, X**2)}
 PRINTED = {"training": {11: 0.1, 21: 0.09, 41: 0.08}, "test": {11: 0.2, 21: 0.19, 41: 0.18}}
 TABLE = {
     name: {column: {w: RNG.uniform(0.02, 0.4, 25) for w in (11, 21, 41)} for column in PRINTED}
@@ -150,6 +151,10 @@ FIGURES = {
             LABELS, "Networks.", y_log=True,
         ),
         shows=[xy(X, *FAN.T, 3 * X), xy(X, *FAN.T, 3 * X, *2 * FAN.T, 6 * X)], log="y",
+    ),
+    "clouds": figure(
+        partial(shared.clouds, CLOUDS, ("position, °", "time, s"), "Dots.", slope=2.0),
+        shows=[xy(X[[0, -1]], 2 * X[[0, -1]])] * 2,
     ),
     "by_case": figure(
         partial(shared.by_case, X, CASES, "time, s", "error, °", "Three swings."),
@@ -354,6 +359,13 @@ def test_table_4_1_has_every_network_medians_and_printed_values():
             }
         dashed = [line.get_ydata()[0] for line in axis.lines if line.get_linestyle() == "--"]
         assert dashed == list(printed.values())
+
+
+def test_clouds_have_a_dot_for_each_pair():
+    for axis, (title, pair) in zip(made("clouds")[1].axes, CLOUDS.items()):
+        assert axis.get_title(loc="left") == title
+        (dots,) = axis.patches
+        np.testing.assert_array_equal(dots.get_path().vertices[::2], np.stack(pair, -1))
 
 
 def test_panels_are_headed_by_their_cases():

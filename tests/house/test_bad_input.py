@@ -189,6 +189,7 @@ def meant() -> dict:
         "curves": dict(x=FILTER, panels={"torque, N m": {"one": FILTER}}),
         "families": dict(panels={"": {"one": (FILTER, np.ones((5, 2)))}}),
         "by_case": dict(x=FILTER, cases={"one": FILTER}),
+        "clouds": dict(panels={"one": (FILTER, FILTER)}, slope=1.0),
         "illustrate": dict(narrow_height=2.0),
         "rmss_by_window": dict(table={"one": {"test": {7: FILTER**2}}}, printed={"test": {7: 0.1}}),
         "quote": dict(value=1.0),
@@ -218,7 +219,7 @@ ASIDE = {"Arm.provenance", "Arm.from_links.provenance", "as_controller.name", "s
 # What others make; its methods are for readers
 MADE = {"Estimate"}
 SIGNED = {"angle", "b", "com", "gravity", "gravity_moments", "inertia", "length", "offset", "phase",
-          "posture", "twist_deg", "value"}  # fmt: skip
+          "posture", "slope", "twist_deg", "value"}  # fmt: skip
 FREE = {"name", "alt", "label", "x_label", "y_label"}  # texts of which any will do
 
 
