@@ -298,7 +298,8 @@ function build({ model, el }) {
     const { seed, momentum } = state;
     const epochs = school.epoch || spec.epochs;
     const extents = `[${picks.extents.map((pair) => `(${pair.join(", ")})`).join(", ")}]`;
-    return filled(spec.code, { extents, scaling, shifted: String(shift() ?? "None"), seed, rate, momentum, epochs });
+    const { width, hidden } = spec.layout;
+    return filled(spec.code, { extents, scaling, shifted: String(shift() ?? "None"), seed, rate, momentum, epochs, width, hidden });
   }
 
   // Controls
@@ -481,7 +482,7 @@ function build({ model, el }) {
     const path = own() ? "your own" : spec.home;
     history.unshift({ ...state, path, events: [...school.events], error: school.test.at(-1), inertia: school.inertia().toFixed(1) });
     history.length = Math.min(5, history.length);
-    const heads = ["weights", "trajectories", "torques", "small error", "direct", "hidden", "error on 6", "M₁₁, kg m²"];
+    const heads = ["weights", "trajectories", "torques", "small error", "direct", "hidden", `error on ${spec.runs}`, "M₁₁, kg m²"];
     const epochs = (h) => h.events.map((e) => (e === null ? "never" : String(e)));
     const rows = history.map((h) => [String(h.seed), h.path, h.torques, ...epochs(h), plain(h.error), h.inertia]);
     runs.replaceChildren(tableOf("Your last runs: first epoch of each event", heads, rows));
