@@ -35,10 +35,10 @@ from workshop.report import results
 from workshop.report.evidence import claims
 
 _KINDS = ("training", "test")
-_NAMES = {"training": "training", "test": "trajectory 6"}
 _NEAR = 1.5  # factor within which a median counts as that of the paper
 _CELLS = [(what, w) for what in _KINDS for w in WINDOWS]
 _PRINTED = {what: {w: getattr(paper.TABLE_4_1[w], what) for w in WINDOWS} for what in _KINDS}
+
 
 def _errors() -> dict:
     """RMSS of the book's networks: ``{reading: {column: {window: errors}}}``."""
@@ -78,7 +78,7 @@ def table_4_1(readings: Mapping[str, str] = _LESSON) -> Table:
     """
     rows = []
     for what, w in _CELLS:
-        row = [f"{_NAMES[what]}, window {w}", significant(_PRINTED[what][w], 2)]
+        row = [f"{what}, {w}", significant(_PRINTED[what][w], 2)]
         for ending in readings.values():
             measured = claims.measured(f"table-4-1-{what}-{w}{ending}")
             ends = np.quantile(measured.replicates, (0.025, 0.975))
@@ -86,7 +86,7 @@ def table_4_1(readings: Mapping[str, str] = _LESSON) -> Table:
             near = abs(np.log(measured.value / _PRINTED[what][w])) <= np.log(_NEAR)
             row.append(f"{f'**{middle}**' if near else middle} ({low} to {high})")
         rows.append(row)
-    return Table(("error", "printed in 1988", *readings), rows)
+    return Table(("motions, window", "printed in 1988", *readings), rows)
 
 
 def figure_4_1() -> Illustration:

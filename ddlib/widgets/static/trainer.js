@@ -389,7 +389,7 @@ function build({ model, el }) {
   const key = NAMES.map((name, j) => make("span", {}, swatch("line", j ? 2 : 0), `${name}'s window`));
   key[1].querySelector("path").setAttribute("stroke-dasharray", "5 3");
   const letters = make("span", {}, "bold: has a name (a acceleration, v velocity, j jerk)");
-  const hands = make("div", { class: "hands" }, make("div", { class: "buttons" }, play, once, anew), status, weighed, list);
+  const hands = make("div", { class: "hands" }, make("div", { class: "buttons" }, play, once, anew), settings[0], status, weighed, list);
   el.replaceChildren(
     frame.el,
     guess,
@@ -400,7 +400,7 @@ function build({ model, el }) {
     make("div", { class: "legend" }, ...key, letters),
     units.el,
     make("div", { class: "charts" }, ...drawn.slice(1).map((one) => one.el)),
-    make("div", { class: "settings" }, first, ...settings),
+    make("div", { class: "settings" }, first, ...settings.slice(1)),
     make("div", { class: "picks" }, picks.svg, make("div", {}, picks.title, picks.table, picks.buttons, recorded)),
     runs,
     make("p", { class: "remark" }, spec.hint),
