@@ -12,7 +12,6 @@ from traitlets import TraitError, link
 from widget_pages import (
     BRIDGE,
     NEXT_FRAME,
-    code_of,
     copied,
     drag,
     flat,
@@ -226,7 +225,7 @@ def test_a_link_restores_settings_and_epoch(page_with, widget):
 @pytest.mark.browser
 def test_a_readers_own_experiment(page_with, capsys):
     """Other extents, recorded and learnt in the page: error and inertia of the code it copies."""
-    widget = NetworkTrainer(epochs=400, code=code_of("window-networks", "TRAINER_CODE"))
+    widget = NetworkTrainer(epochs=400)
     page = page_with(widget, calm=True)
     recorded = page.locator(".recorded")
     assert "Appendix I" in recorded.inner_text()

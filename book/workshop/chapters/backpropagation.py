@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from ddlib import paper
-from ddlib.figures import Illustration, families, network_diagram
+from ddlib.figures import Illustration, families
 from ddlib.learning import Descent, History, TrainingSet, Weights, WindowNetwork, train_ensemble
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS
 from ddlib.tables import quote, scientific, significant, spread
@@ -146,11 +146,6 @@ NETWORKS = {
 _LEVEL = 0.75  # Training RMSS to which runs with and without acceleration are timed
 
 
-def walked() -> Illustration:
-    """The network of the walk: window 21, ten hidden units."""
-    return network_diagram(Weights.random(1, 21)[0])
-
-
 def race() -> Illustration:
     """Eight networks of the lesson's recordings without and with momentum, at the same step."""
     data = TrainingSet.from_recording(JOINT_DAMPING.record()[:-1], 21, scaling=(-1, 1))
@@ -176,7 +171,9 @@ def _quoted() -> None:
     """The book's numbers in the lesson's prose."""
     plain, quick = map(np.median, _needed())
     on_parity = results.read("acceleration")["parity"]
-    quote("backpropagation-weights", Weights.random(1, 21)[0].count(biases=True))
+    weights = Weights.random(1, 21)[0].count(biases=True)
+    quote("backpropagation-weights", weights)
+    quote("backpropagation-tries", 2 * weights)
     quote("backpropagation-needed-without", plain)
     quote("backpropagation-needed-with", quick)
     quote(

@@ -34,34 +34,9 @@ from workshop.report import results
 from workshop.report.evidence import claims
 
 _KINDS = ("training", "test")
-_NAMES = {"training": "training", "test": "trajectory 6"}
 _NEAR = 1.5  # factor within which a median counts as that of the paper
 _CELLS = [(what, w) for what in _KINDS for w in WINDOWS]
 _PRINTED = {what: {w: getattr(paper.TABLE_4_1[w], what) for w in WINDOWS} for what in _KINDS}
-
-TRAINER_CODE = """\
-from dataclasses import replace
-
-from ddlib.analysis import gains, mean_gradient
-from ddlib.learning import TrainingSet, cases, surrogate, train_ensemble
-from ddlib.setups import JOINT_DAMPING, split
-from ddlib.widgets.engine import trainer
-
-extents_deg, shifted = {extents}, {shifted}
-training, test = split(JOINT_DAMPING.record(extents_deg))
-windows, torque = cases(training, 21)
-if shifted is not None:
-    torque = surrogate("shifted", training.tau[:, training.motion], shifted)
-    torque = torque.reshape(-1, 2)
-data = TrainingSet.from_arrays(windows, torque, scaling={scaling})
-data = replace(data, x=data.x[::5], y=data.y[::5])
-start = trainer.first_weights({seed})
-how = dict(rate={rate}, momentum={momentum}, epochs={epochs})
-test_set = data.transform(*cases(test, 21))
-model, history, _ = train_ensemble(start, data, test=test_set, **how)
-print(history.training[-1, 0], history.test[-1, 0])
-inertia = gains(mean_gradient(model, windows[::5]), training.step)[0, 0, 0, 2]
-print(f"inertia in the network: {inertia:.1f} kg m²")"""
 
 
 def _errors() -> dict:
@@ -102,7 +77,7 @@ def table_4_1(readings: Mapping[str, str] = _LESSON) -> Table:
     """
     rows = []
     for what, w in _CELLS:
-        row = [f"{_NAMES[what]}, window {w}", significant(_PRINTED[what][w], 2)]
+        row = [f"{what}, {w}", significant(_PRINTED[what][w], 2)]
         for ending in readings.values():
             measured = claims.measured(f"table-4-1-{what}-{w}{ending}")
             ends = np.quantile(measured.replicates, (0.025, 0.975))
@@ -110,7 +85,7 @@ def table_4_1(readings: Mapping[str, str] = _LESSON) -> Table:
             near = abs(np.log(measured.value / _PRINTED[what][w])) <= np.log(_NEAR)
             row.append(f"{f'**{middle}**' if near else middle} ({low} to {high})")
         rows.append(row)
-    return Table(("error", "printed in 1988", *readings), rows)
+    return Table(("motions, window", "printed in 1988", *readings), rows)
 
 
 def figure_4_1() -> Illustration:

@@ -51,6 +51,31 @@ _ERRORS = (0.03, 2.0)  # range of the errors shown
 _CHOICES = ("extents_deg", "seed", "inputs", "shifted", "step_size", "momentum")
 _NUMBERS = ("error", "training_error", "inertia")
 
+CODE = """\
+from dataclasses import replace
+
+from ddlib.analysis import gains, mean_gradient
+from ddlib.learning import TrainingSet, cases, surrogate, train_ensemble
+from ddlib.setups import JOINT_DAMPING, split
+from ddlib.widgets.engine import trainer
+
+extents_deg, shifted = {extents}, {shifted}
+training, test = split(JOINT_DAMPING.record(extents_deg))  # or your own set-up
+windows, torque = cases(training, {width})
+if shifted is not None:
+    torque = surrogate("shifted", training.tau[:, training.motion], shifted)
+    torque = torque.reshape(-1, 2)
+data = TrainingSet.from_arrays(windows, torque, scaling={scaling})
+data = replace(data, x=data.x[::5], y=data.y[::5])
+start = trainer.first_weights({seed}, {width}, {hidden})
+how = dict(rate={rate}, momentum={momentum}, epochs={epochs})
+test_set = data.transform(*cases(test, {width}))
+model, history, _ = train_ensemble(start, data, test=test_set, **how)
+print(history.training[-1, 0], history.test[-1, 0])
+inertia = gains(mean_gradient(model, windows[::5]), training.step)[0, 0, 0, 2]
+print(f"inertia in the network: {inertia:.1f} kg m²")"""
+"""What *Code* copies, with the reader's choices."""
+
 _HINT = (
     "Your browser trains a network with {hidden} hidden units on every fifth window of {width} "
     "positions. The error on trajectory {last} counts all windows. If you change the trajectories, "
@@ -120,7 +145,7 @@ class NetworkTrainer(PageWidget):
         Draws of torques that are shifted in time.
     code : str
         What *Code* copies; ``{extents}``, ``{scaling}``, ``{shifted}``, ``{seed}``, ``{rate}``,
-        ``{momentum}`` and ``{epochs}`` stand for the reader's choices.
+        ``{momentum}``, ``{epochs}``, ``{width}`` and ``{hidden}`` stand for the reader's choices.
 
     Attributes
     ----------
@@ -197,7 +222,7 @@ class NetworkTrainer(PageWidget):
         level: float = LEVEL,
         momentum: float = MOMENTUM,
         shifts: int = SHIFTS,
-        code: str = "",
+        code: str = CODE,
     ):
         instance("setup", setup, Setup)
         one_of("momentum", momentum, _MOMENTA)
@@ -211,8 +236,6 @@ class NetworkTrainer(PageWidget):
             )
         if extents.min() < 0:
             raise ValueError(f"extents_deg must not be negative, got {extents.min():g}")
-        if np.ptp(extents[:-1], axis=0).max() == 0:
-            raise ValueError("extents_deg must differ among the training runs, got one pair only")
         widest = max(MAX_EXTENT_DEG, float(np.ceil(extents.max())))
         step = plant(setup.arm, setup.effects)["encoder"]
         if step < _FINEST:

@@ -298,7 +298,8 @@ function build({ model, el }) {
     const { seed, momentum } = state;
     const epochs = school.epoch || spec.epochs;
     const extents = `[${picks.extents.map((pair) => `(${pair.join(", ")})`).join(", ")}]`;
-    return filled(spec.code, { extents, scaling, shifted: String(shift() ?? "None"), seed, rate, momentum, epochs });
+    const { width, hidden } = spec.layout;
+    return filled(spec.code, { extents, scaling, shifted: String(shift() ?? "None"), seed, rate, momentum, epochs, width, hidden });
   }
 
   // Controls
@@ -387,7 +388,7 @@ function build({ model, el }) {
   const history = [];
   const key = NAMES.map((name, j) => make("span", {}, swatch("line", `${name} d${j}`), `${name}'s window`));
   const letters = make("span", {}, "bold: has a name (a acceleration, v velocity, j jerk)");
-  const hands = make("div", { class: "hands" }, make("div", { class: "buttons" }, play, once, anew), status, weighed, list);
+  const hands = make("div", { class: "hands" }, make("div", { class: "buttons" }, play, once, anew), settings[0], status, weighed, list);
   el.replaceChildren(
     frame.el,
     guess,
@@ -398,7 +399,7 @@ function build({ model, el }) {
     make("div", { class: "legend" }, ...key, letters),
     units.el,
     make("div", { class: "charts" }, ...drawn.slice(1).map((one) => one.el)),
-    make("div", { class: "settings" }, first, ...settings),
+    make("div", { class: "settings" }, first, ...settings.slice(1)),
     make("div", { class: "picks" }, picks.svg, make("div", {}, picks.title, picks.table, picks.buttons, recorded)),
     runs,
     make("p", { class: "remark" }, spec.hint),
@@ -480,7 +481,7 @@ function build({ model, el }) {
     const path = own() ? "your own" : spec.home;
     history.unshift({ ...state, path, events: [...school.events], error: school.test.at(-1), inertia: school.inertia().toFixed(1) });
     history.length = Math.min(5, history.length);
-    const heads = ["weights", "trajectories", "torques", "small error", "direct", "hidden", "error on 6", "M₁₁, kg m²"];
+    const heads = ["weights", "trajectories", "torques", "small error", "direct", "hidden", `error on ${spec.runs}`, "M₁₁, kg m²"];
     const epochs = (h) => h.events.map((e) => (e === null ? "never" : String(e)));
     const rows = history.map((h) => [String(h.seed), h.path, h.torques, ...epochs(h), plain(h.error), h.inertia]);
     runs.replaceChildren(tableOf("Your last runs: first epoch of each event", heads, rows));

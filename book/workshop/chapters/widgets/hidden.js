@@ -1,7 +1,7 @@
 // What HiddenTorque (window.py) shows. Its torque is covered from the window's first sample on, unless
 // the reader has it uncovered.
 
-import { computes } from "ddlib/curves.js";
+import { computes, extras } from "ddlib/curves.js";
 import { NAMES } from "ddlib/engine.js";
 import { recordedOf } from "ddlib/sliding.js";
 
@@ -27,3 +27,5 @@ computes((view) => {
     ...{ from: end(whole.x[sample] - reach), to: end(whole.x[sample] + reach) },
   };
 });
+
+extras.push((view) => view.el.classList.add("ddlib-hidden"));

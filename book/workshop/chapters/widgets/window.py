@@ -14,7 +14,7 @@ from ddlib.widgets.base import CurveWidget, Panel, Scalar
 from ddlib.widgets.engine._plain import networks
 from ddlib.widgets.hinton import JOINTS, _check_models, common_step, width_choice
 from ddlib.widgets.parts.parameters import Choice
-from ddlib.widgets.scripts import bundle
+from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.table import Live
 
 _HERE = Path(__file__).parent
@@ -168,6 +168,7 @@ class HiddenTorque(CurveWidget):
     """
 
     _esm = bundle(_HERE / "hidden.js")
+    _css = styles(_HERE / "hidden.css")
 
     recorded = t.Bytes(help="positions with half a window on either side, torques", read_only=True)
     recorded.tag(sync=True)
