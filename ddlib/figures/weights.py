@@ -247,21 +247,24 @@ def squares(rows, names: Sequence[str], scale=None) -> Illustration:
     height, joints, width = parts.shape
 
     def draw(figure: Figure):
-        for joint, axis in enumerate(figure.subplots(1, joints, squeeze=False)[0]):
+        beside = figure.get_figwidth() > NARROW
+        axes = figure.subplots(*((1, joints) if beside else (joints, 1)), squeeze=False).ravel()
+        for joint, axis in enumerate(axes):
             corner = (-0.7, -0.7), width + 0.4, height + 0.4
             axis.add_patch(Rectangle(*corner, facecolor="#8c8c8c", lw=0))
             dots(axis, parts[:, joint], 0, 0, 1, 1, 1 / 0.9)
             axis.set(xlim=(-0.7, width - 0.3), ylim=(height - 0.3, -0.7), aspect="equal")
-            axis.set(xticks=[])
-            axis.set_yticks(range(height), [] if joint else names)
+            axis.set_xticks([])
+            axis.set_yticks(range(height), [] if joint and beside else names)
             axis.grid(visible=False)
             if joints > 1:
                 axis.set_title(f"from the {JOINTS[joint]}'s window")
 
+    def high(inches, blocks):  # of one joint's block of rows, with its title
+        return 0.2 + 0.3 * (joints > 1) + inches / blocks / (width + 0.4) * (height + 0.4)
+
     alt = f"Rows of white and black squares: {', '.join(names)}."
-    return illustrate(
-        draw, alt, 7.0, (0.6 if joints > 1 else 0.1) + (0.16 if joints > 1 else 0.35) * height
-    )
+    return illustrate(draw, alt, 7.0, high(5.9, joints), joints * high(2.5, 1))
 
 
 def decomposed(functions: Mapping[str, np.ndarray] | np.ndarray, step: float) -> Illustration:

@@ -8,7 +8,7 @@ import { frameOf } from "ddlib/frame.js";
 const PARTS = { constant: "Constant", even: "Even half", odd: "Odd half" };
 const WIRE = { lift: ["lift", "°"], tilt: ["tilt", "°/s"], bend: ["bend", "°/s²"] };
 const TALLEST = 15; // degrees at the edge of the wire's field
-const RISE = 26; // px by which the strip's edge comes up while it turns
+const RISE = 22; // px by which the strip's edge comes up while it turns
 const NEARER = 0.12; // by which that edge looks larger then
 const PAPER = 16; // px of paper beyond the outermost weights
 const RAD = Math.PI / 180;
@@ -146,9 +146,9 @@ function build({ model, el }) {
       y = top + height + 6;
       return { top, height, middle: top + height / 2, name: narrow ? top - 12 - over : top + height / 2 };
     };
-    at.strip = field(96, narrow ? 14 : RISE);
-    at.wire = field(112);
-    at.bands = bands.map(() => field(56));
+    at.strip = field(88, narrow ? 14 : RISE);
+    at.wire = field(100);
+    at.bands = bands.map(() => field(52));
     const high = y + (narrow ? 24 : 36);
     put(svg, { width: wide, height: high, viewBox: `0 0 ${wide} ${high}` });
     at.axis = y + 18;
