@@ -25,8 +25,8 @@ from workshop.report.evidence.verdicts import Measured
 
 NOTE = (
     "Press a row, or use the arrow keys in the diagram. Each grey bar is a unit: the two torques "
-    "on top, the hidden units below. Its upper row weighs the angles of the shoulder, its lower row "
-    "those of the elbow; time runs to the right."
+    "on top, the hidden units below. Its upper row weighs the shoulder's angles, its lower row "
+    "the elbow's; time runs to the right."
 )
 """What the widget on top of the lesson says of itself."""
 
