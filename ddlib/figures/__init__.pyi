@@ -32,4 +32,5 @@ from .weights import (
     decomposed as decomposed,
     hinton as hinton,
     network_diagram as network_diagram,
+    squares as squares,
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -219,6 +219,54 @@ def hinton(weights: Weights, scale: str = "network") -> Illustration:
     )
     inches = 7.0 if width > 15 else 5.2
     return illustrate(draw, alt, inches, inches * down / across + 0.2)
+
+
+def squares(rows, names: Sequence[str], scale=None) -> Illustration:
+    """Rows of weights as a Hinton diagram draws them, one above the other, each with its name.
+
+    Parameters
+    ----------
+    rows : array_like, shape (rows, width) or (rows, 2, width)
+        Weights, oldest sample first; with two joints their windows stand side by side.
+    names : sequence of str
+        What each row is called.
+    scale : array_like, optional
+        Of the shape of `rows`: the largest weight of each of its rows has a square of full size.
+        Default: `rows` themselves. Larger ones are cut.
+    """
+    rows = finite_array("rows", rows)
+    names, scale = list(names), rows if scale is None else finite_array("scale", scale)
+    if rows.ndim not in (2, 3) or (rows.ndim == 3 and rows.shape[1] != len(JOINTS)):
+        raise ValueError(
+            f"rows must have the shape (rows, width) or (rows, 2, width), got {rows.shape}"
+        )
+    if scale.shape != rows.shape or len(names) != len(rows):
+        raise ValueError(
+            f"scale and names must fit rows {rows.shape}, got {scale.shape}, {len(names)}"
+        )
+    blocks = rows[:, None] if rows.ndim == 2 else rows
+    parts = blocks / np.maximum(abs(scale).reshape(blocks.shape).max(-1, keepdims=True), 1e-300)
+    height, joints, width = parts.shape
+
+    def draw(figure: Figure):
+        beside = figure.get_figwidth() > NARROW
+        axes = figure.subplots(*((1, joints) if beside else (joints, 1)), squeeze=False).ravel()
+        for joint, axis in enumerate(axes):
+            corner = (-0.7, -0.7), width + 0.4, height + 0.4
+            axis.add_patch(Rectangle(*corner, facecolor="#8c8c8c", lw=0))
+            dots(axis, parts[:, joint], 0, 0, 1, 1, 1 / 0.9)
+            axis.set(xlim=(-0.7, width - 0.3), ylim=(height - 0.3, -0.7), aspect="equal")
+            axis.set_xticks([])
+            axis.set_yticks(range(height), [] if joint and beside else names)
+            axis.grid(visible=False)
+            if joints > 1:
+                axis.set_title(f"from the {JOINTS[joint]}'s window")
+
+    def high(inches, blocks):  # of one joint's block of rows, with its title
+        return 0.2 + 0.3 * (joints > 1) + inches / blocks / (width + 0.4) * (height + 0.4)
+
+    alt = f"Rows of white and black squares: {', '.join(names)}."
+    return illustrate(draw, alt, 7.0, high(5.9, joints), joints * high(2.5, 1))
 
 
 def decomposed(functions: Mapping[str, np.ndarray] | np.ndarray, step: float) -> Illustration:

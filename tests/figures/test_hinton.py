@@ -8,7 +8,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from pictures import boxes, check, drawn
 
-from ddlib.figures import ROLES, hinton
+from ddlib.figures import ROLES, hinton, squares as squares_of
 from ddlib.figures.weights import hinton_on, relative_weights
 from ddlib.learning import Weights
 from workshop.chapters.whole_state_space import hinton_states
@@ -151,3 +151,26 @@ def test_a_row_gets_a_frame(unit, joint):
         for p in inside
     )
     np.testing.assert_allclose(found, np.sort(rows[unit, joint]) / rest.largest)
+
+
+def test_rows_of_squares_are_areas_beside_their_names():
+    """Two rows of two joints; a row that is drawn to the scale of another one is cut there."""
+    rows = np.array([[[1.0, -4, 0], [2, 2, -2]], [[0, 9, -1], [-1, 0.25, 1]]])
+    scale = rows * [[[1.0], [4]], [[0.5], [1]]]
+    picture, figure = drawn(lambda: squares_of(rows, ("first", "second"), scale=scale))
+    check(picture, figure, upon="#ffffff")
+    assert [label.get_text() for label in figure.axes[0].get_yticklabels()] == ["first", "second"]
+    for joint, axis in enumerate(figure.axes):
+        found = np.zeros((2, 3))
+        for square in axis.patches[1:]:
+            x, y = np.add(square.get_xy(), square.get_width() / 2).round().astype(int)
+            sign = 1 if to_hex(square.get_facecolor()) == "#ffffff" else -1
+            found[y, x] = sign * square.get_width() * square.get_height()
+        most = abs(scale[:, joint]).max(-1, keepdims=True)
+        np.testing.assert_allclose(found / 0.9, np.clip(rows[:, joint] / most, -1 / 0.9, 1 / 0.9))
+
+
+@pytest.mark.parametrize("wrong", [{"names": ["one"]}, {"scale": np.ones((2, 3))}])
+def test_rows_of_squares_need_a_name_and_a_scale_each(wrong):
+    with pytest.raises(ValueError, match="must fit rows"):
+        squares_of(**{"rows": np.ones((2, 2, 3)), "names": ["a", "b"], **wrong})

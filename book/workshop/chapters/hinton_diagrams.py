@@ -24,10 +24,9 @@ from workshop.report import committed, results
 from workshop.report.evidence.verdicts import Measured
 
 NOTE = (
-    "Press a row, or move to the diagram and use the arrow keys. Each grey blob is a unit: the two "
-    "torques are on top, the hidden units below. The upper row of a blob weights the positions of "
-    "the shoulder, and the lower row those of the elbow. Time runs to the right. Above the rows "
-    "are the weights to or from other units, and at the left is the bias."
+    "Press a row, or use the arrow keys in the diagram. Each grey bar is a unit: the two torques "
+    "on top, the hidden units below. Its upper row weighs the shoulder's angles, its lower row "
+    "the elbow's; time runs to the right."
 )
 """What the widget on top of the lesson says of itself."""
 

@@ -8,9 +8,17 @@ import { frameOf } from "ddlib/frame.js";
 const PARTS = { constant: "Constant", even: "Even half", odd: "Odd half" };
 const WIRE = { lift: ["lift", "°"], tilt: ["tilt", "°/s"], bend: ["bend", "°/s²"] };
 const TALLEST = 15; // degrees at the edge of the wire's field
-const RISE = 34; // px by which the strip's edge comes up while it turns
+const RISE = 22; // px by which the strip's edge comes up while it turns
+const NEARER = 0.12; // by which that edge looks larger then
 const PAPER = 16; // px of paper beyond the outermost weights
 const RAD = Math.PI / 180;
+const BESIDE = 204; // px beside the fields of a wide bench: sentence, jars, numbers
+const SIGNS = {
+  fold: "M-3 -5h0M3 -5h0M-3 0h0M3 0h0M-3 5h0M3 5h0",
+  lift: "M0 -6V6M-3 -3L0 -6L3 -3M-3 3L0 6L3 3",
+  tilt: "M-6 -1A6 6 0 0 1 5 -3M5 -7V-3H1M6 1A6 6 0 0 1 -5 3M-5 7V3H-1",
+  bend: "M-6 0C-4 6 4 6 6 0M0 4V-6M-3 -3L0 -6L3 -3",
+};
 const FRAME = 25; // ms for a sample that is played: 2.5 times slower than it was
 
 const sum = (values) => values.reduce((all, value) => all + value, 0);
@@ -71,24 +79,32 @@ function build({ model, el }) {
     set({ [name]: within(name, value) });
   };
 
+  const said = make("p", { class: "verdict", role: "status" });
+  const aside = make("div", { class: "says" }, said);
+
   // The drawing
   const text = (kind, words = "") => make("text", { class: kind }, words);
   const group = (kind, ...children) => make("g", { class: kind }, ...children);
   const handleOf = (name, words) => {
-    const dot = make("circle", { class: "dot", r: 11 });
+    const dot = make("circle", { class: "dot", r: 13 });
+    const sign = make("path", { class: "sign", d: SIGNS[name] });
     const label = text("handle-name", name === "fold" ? "" : name);
-    const g = make("g", { class: `grip ${name}`, role: "slider", tabindex: 0, "aria-label": words }, dot, label);
+    const g = make("g", { class: `grip ${name}`, role: "slider", tabindex: 0, "aria-label": words }, dot, sign, label);
     return { g, dot, label };
   };
   const strip = {
+    left: make("rect", { class: "left" }), // where the flap lay
+    shade: make("polygon", { class: "shade" }),
     sheet: make("polygon", { class: "sheet" }),
     flap: make("polygon", { class: "flap" }),
     zero: make("line", { class: "zero" }),
     crease: make("line", { class: "crease" }),
+    ghosts: group("ghosts"),
     stems: group("stems"),
     pieces: group("pieces"),
+    over: make("path", { class: "over" }),
   };
-  const wire = { zero: make("line", { class: "zero" }), path: make("path", { class: "wire" }), dots: group("beads") };
+  const wire = { zero: make("line", { class: "zero" }), stems: make("path", { class: "reach" }), path: make("path", { class: "wire" }), dots: group("beads") };
   const grips = {
     fold: handleOf("fold", "Fold the strip"),
     bend: handleOf("bend", "Bend the wire"),
@@ -96,79 +112,111 @@ function build({ model, el }) {
     tilt: handleOf("tilt", "Tilt the wire"),
   };
   const bands = Object.entries(PARTS).map(([name, words]) => {
-    const jar = { level: make("rect", {}), glass: make("path", { class: "glass" }), number: text("number") };
-    const bits = { zero: make("line", { class: "zero" }), bars: group("bars"), arc: make("path", { class: "arc" }), pair: text("pair") };
+    const jar = { level: make("path", {}), number: text("number"), how: text("how") };
+    const glass = make("path", { class: "glass" });
+    const bits = { bars: group("bars"), arc: make("path", { class: "arc" }), pair: text("pair"), thumbs: group("thumbs") };
     const traces = { wanted: make("path", { class: "expected" }), got: make("path", { class: "trace" }) };
     const label = text(`name ${name}`, words);
+    const shelf = { zero: make("line", { class: "zero" }), pours: make("path", { class: "pours" }), glass };
     const g = group(`band ${name}`, label, ...Object.values(bits), ...Object.values(traces), ...Object.values(jar));
-    return { name, g, label, jar, ...bits, ...traces };
+    return { name, g, label, jar, shelf, ...bits, ...traces };
   });
-  const [stripName, wireName] = [text("name", "The row"), text("name shoulder", "The joint’s path")];
-  const hint = text("hint x", "Nothing has come out yet: fold the strip");
+  const [stripName, wireName] = [text("name", "The row"), text("name shoulder", "The joint")];
+  const [stripSub, wireSub] = [text("how", `${n} weights`), text("how", "its path, a wire")];
+  const hint = text("hint x", "Empty, until you fold the strip");
   const axis = group("axis");
+  const guides = make("path", { class: "guides" });
   const svg = make(
     "svg",
     { class: "bench", role: "group", "aria-label": `${title}: strip, wire and jars` },
-    stripName, strip.sheet, strip.zero, strip.stems, strip.flap, strip.pieces, strip.crease, grips.fold.g,
-    wireName, wire.zero, wire.path, wire.dots, grips.bend.g, grips.lift.g, grips.tilt.g,
-    ...bands.map(({ g }) => g), hint, axis,
+    guides, stripName, stripSub, strip.left, strip.shade, strip.sheet, strip.zero, strip.ghosts, strip.stems, strip.flap,
+    strip.pieces, strip.crease, strip.over, grips.fold.g,
+    wireName, wireSub, wire.zero, wire.stems, wire.path, wire.dots, grips.bend.g, grips.lift.g, grips.tilt.g,
+    ...bands.flatMap(({ shelf, g }) => [shelf.zero, shelf.pours, g, shelf.glass]), hint, axis,
   ); // prettier-ignore
-
   const at = {}; // places of the drawing, set by layout()
   function layout() {
     const wide = el.clientWidth || 640;
     const narrow = wide < 620;
-    Object.assign(at, { wide, narrow, x0: narrow ? 22 : 134, x1: wide - (narrow ? 84 : 164) });
+    Object.assign(at, { wide, narrow, x0: narrow ? 22 : 120, x1: wide - (narrow ? 84 : BESIDE + 16) });
     const name = narrow ? 20 : 0; // room above a field for its name
     let y = 0;
     const field = (height, over = 0) => {
       const top = y + name + over;
-      y = top + height + 8;
-      return { top, height, middle: top + height / 2, name: narrow ? y - height - 14 - over : top + height / 2 };
+      y = top + height + 6;
+      return { top, height, middle: top + height / 2, name: narrow ? top - 12 - over : top + height / 2 };
     };
-    at.strip = field(104, narrow ? 16 : RISE);
-    at.wire = field(132);
-    at.bands = bands.map(() => field(62));
-    put(svg, { width: wide, height: y + 22, viewBox: `0 0 ${wide} ${y + 22}` });
-    at.axis = y + 12;
-    put(hint, { x: (at.x0 + at.x1) / 2, y: at.bands[0].middle });
-    for (const [label, place] of [[stripName, at.strip], [wireName, at.wire]]) put(label, { x: 0, y: place.name });
-    bands.forEach(({ label }, i) => put(label, { x: 0, y: at.bands[i].name }));
+    at.strip = field(88, narrow ? 14 : RISE);
+    at.wire = field(100);
+    at.bands = bands.map(() => field(52));
+    const high = y + (narrow ? 24 : 36);
+    put(svg, { width: wide, height: high, viewBox: `0 0 ${wide} ${high}` });
+    at.axis = y + 18;
+    put(hint, { x: (at.x0 + at.x1) / 2, y: at.bands[1].top - 4 });
+    for (const [label, below, place] of [[stripName, stripSub, at.strip], [wireName, wireSub, at.wire]]) {
+      put(label, { x: 0, y: place.name - (narrow ? 0 : 8) });
+      put(below, { x: 0, y: place.name + 16, visibility: narrow ? "hidden" : "visible" });
+    }
+    bands.forEach(({ label }, i) => put(label, { x: 0, y: at.bands[i].name - (narrow ? 0 : 12) }));
+    const ends = [0, half, n - 1].map((k) => `M${xOf(k)} ${at.wire.top}V${y + 6}`);
+    put(guides, { d: ends.join("") });
+    el.classList.toggle("wide", !narrow);
+    put(aside, { style: narrow ? "" : `left: ${at.x1 + 44}px` });
+    at.jar = at.x1 + (narrow ? 32 : 44);
+    at.jarWide = narrow ? 40 : 60;
+    bands.forEach(({ shelf }, i) => {
+      const { top, height, middle } = at.bands[i];
+      level(shelf.zero, at.bands[i]);
+      const [from, to] = [at.x1 + 10, at.jar - 9];
+      put(shelf.pours, { d: narrow ? "M0 0" : `M${from} ${middle}H${to}M${to - 4} ${middle - 4}L${to} ${middle}L${to - 4} ${middle + 4}` });
+      const ticks = [0.3, 0.52, 0.74].map((share) => `M${at.jar + at.jarWide} ${short(top + share * height)}h-7`);
+      put(shelf.glass, { d: `M${at.jar - 4} ${top}q4 0 4 4v${height - 12}q0 8 8 8h${at.jarWide - 16}q8 0 8 -8v${12 - height}q0 -4 4 -4${ticks.join("")}` });
+    });
   }
   function drawAxis() {
     const last = (motion[0].length - n) * step;
     const words = moment < 0 ? [`−${1e3 * step * half} ms`, "now", `${1e3 * step * half} ms`] : ["0 s", "", `${short(last)} s`];
-    axis.replaceChildren(...words.map((word, k) => make("text", { class: "x", x: xOf(k * half), y: at.axis }, word)));
+    axis.replaceChildren(...words.map((word, k) => make("text", { class: "x", x: Math.max(28, xOf(k * half)), y: at.axis }, word)));
   }
   const xOf = (k) => short(at.x0 + (k / (n - 1)) * (at.x1 - at.x0));
   const level = (line, place) => put(line, { x1: at.x0, x2: at.x1, y1: place.middle, y2: place.middle });
 
-  // A weight as a stem: filled if positive, hollow if negative, dotted if seen through the paper.
-  function stem(left, base, height, kind = "") {
-    const dot = make("circle", { class: `weight ${height < 0 ? "hollow" : ""} ${kind}`, cx: short(left), cy: short(base - height), r: at.narrow ? 3 : 4 });
+  // A weight as a stem: filled if positive, hollow if negative, dotted if seen through the paper; as
+  // `wide` as it looks on a flap that turns.
+  function stem(left, base, height, kind = "", wide = 1) {
+    const place = `translate(${short(left)} ${short(base - height)}) scale(${short(Math.max(0.3, wide))} 1)`;
+    const dot = make("circle", { class: `weight ${height < 0 ? "hollow" : ""} ${kind}`, transform: place, r: at.narrow ? 3.2 : 4.5 });
     return [make("line", { class: `stem ${kind}`, x1: short(left), x2: short(left), y1: short(base), y2: short(base - height) }), dot];
   }
   function drawStrip() {
     const { top, height, middle } = at.strip;
-    const [turn, centre, reachX] = [Math.PI * get("fold"), xOf(half), xOf(n - 1) - xOf(half)];
+    const [fold, centre, reachX] = [get("fold"), xOf(half), xOf(n - 1) - xOf(half)];
+    const turn = Math.PI * fold;
     const scale = (0.42 * height) / largest(row);
     const edge = centre + (reachX + PAPER) * Math.cos(turn);
-    const up = RISE * Math.sin(turn);
+    const [up, more] = [RISE * Math.sin(turn), (NEARER * Math.sin(turn) * height) / 2];
+    const right = xOf(n - 1) + PAPER;
     const corners = (points) => points.map((point) => point.map(short).join()).join(" ");
+    put(strip.left, { x: centre, y: top, width: right - centre, height });
+    put(strip.shade, { points: corners(fold < 0.5 ? [[centre, top + 8], [(edge + 2 * right) / 3, top + 14], [(edge + 2 * right) / 3, top + height], [centre, top + height]] : []) });
     put(strip.sheet, { points: corners([[xOf(0) - PAPER, top], [centre, top], [centre, top + height], [xOf(0) - PAPER, top + height]]) });
-    put(strip.flap, { points: corners([[centre, top], [edge, top - up], [edge, top + height - up], [centre, top + height]]) });
-    level(strip.zero, at.strip);
+    put(strip.flap, { points: corners([[centre, top], [edge, top - up - more], [edge, top + height - up + more], [centre, top + height]]) });
+    put(strip.zero, { x1: xOf(0) - PAPER, x2: centre, y1: middle, y2: middle });
     put(strip.crease, { x1: centre, x2: centre, y1: top - 6, y2: top + height + 6 });
-    const over = turn > Math.PI / 2;
+    const [from, to] = [centre + 0.62 * reachX, centre - 0.4 * reachX];
+    put(strip.over, { d: fold < 0.35 ? `M${short(from)} ${top - 10}Q${centre} ${top - 40} ${short(to)} ${top - 8}M${short(to + 3)} ${top - 16}L${short(to)} ${top - 8}L${short(to + 9)} ${top - 7}` : "M0 0" });
+    const over = fold > 0.5;
     const stems = row.flatMap((f, k) => {
       if (k <= half) return stem(xOf(k), middle, scale * f);
       const share = (k - half) / half;
-      return stem(centre + share * reachX * Math.cos(turn), middle - up * share, scale * f, over ? "behind" : "");
+      const tall = scale * f * (1 + NEARER * Math.sin(turn) * share);
+      return stem(centre + share * reachX * Math.cos(turn), middle - up * share, tall, over ? "behind" : "", Math.abs(Math.cos(turn)));
     });
     strip.stems.replaceChildren(...stems);
+    const lands = fold > 0.2 && fold < 1 ? row.slice(half + 1) : []; // where the mirror image will lie
+    strip.ghosts.replaceChildren(...lands.map((f, k) => make("circle", { class: "ghost", cx: xOf(half - 1 - k), cy: short(middle - scale * f), r: at.narrow ? 3.2 : 4.5 })));
     svg.insertBefore(strip.flap, over ? strip.zero : strip.stems);
-    const done = get("fold") === 1;
-    const pieces = done ? row.slice(0, half + 1).flatMap((_, k) => {
+    const pieces = fold === 1 ? row.slice(0, half + 1).flatMap((_, k) => {
       let from = 0;
       return Object.entries(parts).map(([name, part], i) => {
         const [y1, y2] = [middle - scale * from, middle - scale * (from + part[k])];
@@ -179,7 +227,7 @@ function build({ model, el }) {
     strip.pieces.replaceChildren(...pieces);
     const { g } = grips.fold;
     put(g, { transform: `translate(${short(edge)} ${short(middle - up)})` });
-    const percent = Math.round(100 * get("fold"));
+    const percent = Math.round(100 * fold);
     put(g, { "aria-valuemin": 0, "aria-valuemax": 100, "aria-valuenow": percent, "aria-valuetext": `${percent} %` });
   }
   const now = () => (moment < 0 ? angles(x, { lift: get("lift"), tilt: get("tilt"), bend: get("bend") }) : motion[0].slice(moment, moment + n).map((q) => q / RAD));
@@ -188,6 +236,7 @@ function build({ model, el }) {
     const scale = height / 2 / (moment < 0 ? TALLEST : widest * 1.05);
     const y = path.map((q) => short(middle - scale * q));
     level(wire.zero, at.wire);
+    put(wire.stems, { d: y.map((v, k) => `M${xOf(k)} ${middle}V${v}`).join("") });
     put(wire.path, { d: `M${y.map((v, k) => `${xOf(k)} ${v}`).join("L")}` });
     wire.dots.replaceChildren(...y.map((v, k) => make("circle", { class: "bead", cx: xOf(k), cy: v, r: at.narrow ? 2.5 : 3.5 })));
     const places = { bend: 0, lift: half, tilt: n - 1 };
@@ -197,7 +246,7 @@ function build({ model, el }) {
       g.style.display = moment < 0 ? "" : "none";
       put(g, { transform: `translate(${xOf(k)} ${y[k]})`, "aria-valuemin": -reach[name], "aria-valuemax": reach[name], "aria-valuenow": value });
       put(g, { "aria-valuetext": minus(`${value} ${WIRE[name][1]}`) });
-      put(label, { x: name === "tilt" && !at.narrow ? 16 : 0, y: name === "tilt" && !at.narrow ? 4 : y[k] < middle ? -17 : 26, class: `handle-name ${name === "tilt" && !at.narrow ? "" : "x"}` });
+      put(label, { x: name === "tilt" && !at.narrow ? 18 : 0, y: name === "tilt" && !at.narrow ? 5 : y[k] < middle ? -19 : 29, class: `handle-name ${name === "tilt" && !at.narrow ? "" : "x"}` });
     }
   }
   const digits = () => Math.min(4, Math.max(0, 1 - Math.floor(Math.log10(most))));
@@ -208,7 +257,6 @@ function build({ model, el }) {
     bands.forEach((band, i) => {
       const { middle, height, top } = at.bands[i];
       band.g.style.display = open ? "" : "none";
-      level(band.zero, at.bands[i]);
       const products = parts[band.name].map((f, k) => f * path[k] * RAD);
       const whole = sum(products);
       const width = 0.62 * (xOf(1) - xOf(0));
@@ -228,26 +276,41 @@ function build({ model, el }) {
       put(band.arc, { d: told ? `M${xOf(0)} ${top + 4}C${xOf(3)} ${top - 8} ${xOf(n - 4)} ${top - 8} ${xOf(n - 1)} ${top + 4}` : "M0 0" });
       put(band.pair, { x: (at.x0 + at.x1) / 2, y: top + 7, class: "pair x" });
       write(band.pair, told ? `${numberOf(first)} ${last < 0 ? "−" : "+"} ${numberOf(Math.abs(last))} = ${numberOf(first + last)}` : "");
+      // the row's part, small
+      const thumb = largest([...parts.even, ...parts.odd]) / 10;
+      const spot = (k) => 2 + 4.2 * k;
+      band.thumbs.replaceChildren(...(at.narrow ? [] : parts[band.name].map((f, k) => make("path", { class: "thumb", d: `M${spot(k)} ${middle + 15}V${short(middle + 15 - f / thumb)}M${spot(k)} ${short(middle + 15 - f / thumb)}h0` }))));
       // the jar
-      const left = at.x1 + (at.narrow ? 32 : 44);
-      const wide = at.narrow ? 40 : 54;
       const full = playing ? highest : most;
-      const fill = Math.min(1, Math.abs(whole) / full) * (height - 8);
-      put(band.jar.level, { class: whole < 0 ? "level hollow" : "level", x: left, width: wide, y: short(top + height - fill), height: short(fill) });
-      put(band.jar.glass, { d: `M${left - 4} ${top + 2}h4v${height - 8}q0 6 6 6h${wide - 12}q6 0 6 -6v${-(height - 8)}h4` });
-      put(band.jar.number, at.narrow ? { x: at.wide, y: at.bands[i].name, class: "number y" } : { x: left + wide + 8, y: middle + 6, class: "number" });
+      const fill = Math.min(1, Math.abs(whole) / full) * (height - 10);
+      const [left, wave] = [at.jar + 2.5, (at.jarWide - 5) / 4];
+      const surface = `q${wave / 2} -4 ${wave} 0t${wave} 0t${wave} 0t${wave} 0`;
+      const round = Math.min(6, fill);
+      put(band.jar.level, { class: whole < 0 ? "level hollow" : "level", d: fill < 1 ? "M0 0" : `M${left} ${short(top + height - 2.5 - fill)}${surface}v${short(fill - round)}q0 ${round} ${-round} ${round}h${2 * round - 4 * wave}q${-round} 0 ${-round} ${-round}Z` });
+      put(band.jar.number, at.narrow ? { x: at.jar + at.jarWide + 4, y: at.bands[i].name, class: "number y" } : { x: at.jar + at.jarWide + 12, y: middle + 2, class: "number" });
+      put(band.jar.how, { x: at.jar + at.jarWide + 12, y: middle + 18 });
       write(band.jar.number, numberOf(whole));
+      write(band.jar.how, playing || at.narrow ? "" : howOf(products, whole));
     });
+  }
+  // How the products add up.
+  function howOf(products, whole) {
+    const size = sum(products.map(Math.abs));
+    if (size < 0.02 * most) return "nearly nothing";
+    const unlike = largest(products.map((value, k) => value + products[n - 1 - k]));
+    if (unlike < 0.01 * largest(products)) return "pairs cancel";
+    return Math.abs(whole) < 0.2 * size ? "mostly cancels" : "adds up";
   }
 
   // What the bench says
-  const share = (value) => `${Math.round(100 * value)} %`;
+  const share = (value) => `${Math.round(100 * value)} %`;
   function sentence(path) {
     if (get("fold") < 1) return "Take the strip by its right edge and fold it over. By keyboard: arrow keys on the round handles.";
     if (moment >= 0) {
       const { odd, even } = played;
-      return `Dashed: the joint’s speed and its acceleration, each times one number. They explain ${share(odd.told)} of what went into the odd jar, and ${share(even.told)} of the even jar.`;
+      return `Dashed: the joint’s speed and its acceleration, each times a number. They explain ${share(odd.told)} of what went into the odd jar, and ${share(even.told)} of the even jar.`;
     }
+    if (get("lift") === reach.lift && !get("tilt") && !get("bend")) return "What agrees with its mirror image is the even half, what opposes it the odd half. Now move the wire.";
     const moved = Object.keys(WIRE).filter((name) => Math.abs(get(name)) > 0.02 * reach[name]);
     const words = { lift: "Lifted: the joint stands still.", tilt: "Tilted: a steady speed.", bend: "Bent: the joint speeds up." };
     const what = moved.length === 1 ? words[moved[0]] : moved.length ? "Several at once." : "The joint stands at zero.";
@@ -256,7 +319,6 @@ function build({ model, el }) {
     if (!names.length) return `${what} No jar gets much.`;
     return `${what} ${names.length === 1 ? `Only the ${names[0]} jar fills.` : `These jars fill: ${names.join(", ")}.`}`;
   }
-  const said = make("p", { class: "verdict", role: "status" });
 
   function draw() {
     const path = now();
@@ -304,8 +366,9 @@ function build({ model, el }) {
     write(said, "The window slides along the motion; what goes into each jar is drawn.");
     run(performance.now());
   });
+  play.classList.add("play");
   const choices = labels.map((label) => buttonOf(label, () => set({ row: label })));
-  const bar = make("div", { class: "presets" }, make("span", {}, "Row"), ...choices, play);
+  const bar = make("div", { class: "presets" }, make("span", {}, "Row"), ...choices);
 
   // Handles
   const centreOf = ({ dot }) => {
@@ -367,7 +430,7 @@ function build({ model, el }) {
       set({ [name]: value });
     });
   }
-  el.replaceChildren(frame.el, bar, said, svg);
+  el.replaceChildren(frame.el, bar, make("div", { class: "board" }, svg, aside, play));
   const events = ["fold", ...Object.keys(reach)].map((name) => `change:${name}`);
   for (const event of events) model.on(event, draw);
   model.on("change:row", take);

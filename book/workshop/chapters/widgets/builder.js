@@ -1,5 +1,5 @@
-// Shows FilterBuilder (builder.py): a window of stems that the reader draws, its output over the
-// truth, its gain.
+// Shows FilterBuilder (builder.py): a window of stems that the reader draws, and its output over the
+// truth.
 
 import { chart } from "ddlib/charts.js";
 import { draggable } from "ddlib/dragging.js";
@@ -41,16 +41,6 @@ function fittedTo(truth, f, seen) {
     missed += (truth[t] - output[t]) ** 2;
   }
   return { output, factor, error: Math.sqrt(missed / spread) };
-}
-
-function gainOf(f, frequency, period) {
-  let [re, im] = [0, 0];
-  f.forEach((weight, i) => {
-    const angle = 2 * Math.PI * frequency * period * (i - (f.length >> 1));
-    re += weight * Math.cos(angle);
-    im += weight * Math.sin(angle);
-  });
-  return Math.hypot(re, im);
 }
 
 const medianOf = (values) => {
@@ -262,7 +252,7 @@ function build({ model, el }) {
   const spoken = make("p", { class: "spoken", "aria-live": "polite" });
   view.say = (text) => (spoken.textContent = text);
   const table = make("div", { class: "compared-with", hidden: "" });
-  const places = [0, 1].map(() => make("div", { class: "charts" }));
+  const place = make("div", { class: "charts" });
   const title = make("div", { class: "title" }, "Weights");
   el.replaceChildren(
     frame.el,
@@ -276,9 +266,8 @@ function build({ model, el }) {
         { class: "results" },
         make("div", { class: "score" }, make("span", {}, "Error "), number, times),
         meter,
-        places[0],
+        place,
       ),
-      places[1],
       make("div", { class: "words" }, elsewhere, table, make("p", { class: "remark" }, spec.hint)),
     ),
     spoken,
@@ -289,7 +278,7 @@ function build({ model, el }) {
     drawn = spec.panels.map((panel) =>
       chart(view, { ...panel, curves: compared ? panel.curves : panel.curves.slice(0, 2) }),
     );
-    drawn.forEach((panel, k) => places[k].replaceChildren(panel.el));
+    place.replaceChildren(...drawn.map((panel) => panel.el));
     drawn.forEach((panel) => panel.resize());
   }
   const plain = (x) => x.toFixed(x < 0.0995 ? 3 : 2);
@@ -341,18 +330,8 @@ function build({ model, el }) {
     write(compare, tried ? (compared ? "Hide the others" : "Compare") : "Compare (draw first)");
     table.hidden = !compared;
     if (compared) tabulate(own);
-    const frequencies = spec.panels[1].x;
-    const filters = [[f, own], ...shown.map((rival) => [rival.f, fittedTo(truth, rival.f, seen[0])])];
-    const [mine, ...theirs] = filters.map(([weights, fit]) => ({
-      output: fit.output,
-      gain: frequencies.map((nu) => Math.abs(fit.factor) * gainOf(weights, nu, period)),
-    }));
-    const curves = { "own output": mine.output, "own gain": mine.gain, truth };
-    curves.ideal = frequencies.map((nu) => (2 * Math.PI * nu) ** 2);
-    shown.forEach(({ key }, k) => {
-      curves[`${key} output`] = theirs[k].output;
-      curves[`${key} gain`] = theirs[k].gain;
-    });
+    const curves = { "own output": own.output, truth };
+    for (const { key, f: theirs } of shown) curves[`${key} output`] = fittedTo(truth, theirs, seen[0]).output;
     drawn.forEach((panel) => {
       panel.redraw(curves);
       panel.describe(curves);

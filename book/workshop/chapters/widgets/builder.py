@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
-from ddlib.analysis import frequency_response, savitzky_golay
+from ddlib.analysis import savitzky_golay
 from ddlib.learning import sliding_windows
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, Setup, split, true_states
@@ -23,11 +23,9 @@ _HERE = Path(__file__).parent
 
 _WIDTH = 21  # stems of the window
 _ZEROS = 20  # other zeros of the encoder by which the same motion is read again
-_FREQUENCIES = np.geomspace(0.5, 50.0, 81)  # of the gain, Hz: up to half the sampling rate
 _FINEST = 1e-9  # step that stands for no encoder, rad
 _LEVELS = 600  # a stem stands at a whole multiple of one part in so many of its largest height
 _TALL = 0.9  # largest stem of a starting point, of the height there is
-_GAINS = (1.0, 2e5)  # range of the gains shown, 1/s^2
 
 _HINT = (
     "Drag the dots, or sweep across them in one stroke. By touch, begin beside the dots and sweep "
@@ -104,7 +102,7 @@ def _textbook(width: int, derivative: int = 2) -> np.ndarray:
 
 
 class FilterBuilder(PageWidget):
-    """Draw 21 weights that measure acceleration; see output, error and gain at once.
+    """Draw 21 weights that measure acceleration; see output and error at once.
 
     Everything is computed in the page, with a kernel and without. Least squares and a trained
     unit can be laid over one's own filter once it has been changed.
@@ -129,19 +127,12 @@ class FilterBuilder(PageWidget):
         time = np.arange(truth.size) * LOG_STEP
         most = 1.25 * np.abs(truth).max()
 
-        def curves(what, aim, label):
-            """Names of curves, and what the legend calls them: one's own comes first."""
-            others = {f"unit {what}": "a trained unit", f"least {what}": "least squares"}
-            return {f"own {what}": "yours", aim: label, **others}
-
-        output, gain = curves("output", "truth", "true"), curves("gain", "ideal", "ideal, (2πν)²")
+        others = {"unit output": "a trained unit", "least output": "least squares"}
+        output = {"own output": "yours", "truth": "true", **others}
         own = {"yours": "network", "a trained unit": "network", "least squares": "before"}
-        roles = {"roles": own}
-        panels = [
-            Panel("Acceleration, rad/s²", output, "time, s", time, y_range=(-most, most), **roles),
-            Panel("Gain, 1/s²", gain, "frequency, Hz", _FREQUENCIES, "log", "log", y_range=_GAINS,
-                  **roles),
-        ]  # fmt: skip
+        panel = Panel(
+            "Acceleration, rad/s²", output, "time, s", time, y_range=(-most, most), roles=own
+        )
         spec = {
             "title": "Draw a filter by hand: measure acceleration",
             "hint": _HINT,
@@ -157,11 +148,8 @@ class FilterBuilder(PageWidget):
                 ["bare", "That unit without its mean", (unit - unit.mean()).tolist()],
                 ["least", "Least squares on this recording", _least_squares(setup).tolist()],
             ],
-            "panels": [panel.description() for panel in panels],
-            "curves": [
-                *({"name": name, "low": -most, "high": most} for name in output),
-                *({"name": name, "low": _GAINS[0], "high": _GAINS[1]} for name in gain),
-            ],
+            "panels": [panel.description()],
+            "curves": [{"name": name, "low": -most, "high": most} for name in output],
         }
         motion = np.concatenate([q, truth]).astype("<f8").tobytes()
         still, alt = _still(time, truth, setup)
@@ -170,19 +158,11 @@ class FilterBuilder(PageWidget):
 
 
 def _still(time, truth, setup) -> tuple[str, str]:
-    """A textbook filter, its output and its gain, and what the picture shows."""
+    """A textbook filter and its output, and what the picture shows."""
     name = "Savitzky–Golay, 11"
     f = starts()[name]
-    response = frequency_response(f, _FREQUENCIES, LOG_STEP)
-    output = windows(0.0, setup) @ f
-    factor = np.polyfit(output - output.mean(), truth, 1)[0]
     half = _WIDTH // 2 * LOG_STEP * 1e3
-    curves = {
-        "weights": f,
-        "output": _fitted(f, 0.0, setup),
-        "gain": np.clip(np.abs(factor * response), _GAINS[0], None),
-    }
-    ideal = {"ideal": (2 * np.pi * _FREQUENCIES) ** 2}
+    curves = {"weights": f, "output": _fitted(f, 0.0, setup)}
     panels = [
         Panel(
             "Weights", {"weights": name}, "time from the centre, ms",
@@ -192,13 +172,9 @@ def _still(time, truth, setup) -> tuple[str, str]:
             "Acceleration, rad/s²", {"output": "filter"}, "time, s", time, fixed={"true": truth},
             roles={"filter": "network"},
         ),
-        Panel(
-            "Gain, 1/s²", {"gain": "filter"}, "frequency, Hz", _FREQUENCIES, "log", "log",
-            fixed=ideal, y_range=_GAINS, roles={"filter": "network"},
-        ),
     ]  # fmt: skip
     alt = (
         "A window of 21 weights as stems. Its output over the true acceleration of the shoulder "
-        "along trajectory 6. Its gain over frequency beside that of an ideal second derivative."
+        "along trajectory 6."
     )
     return still_picture(curves, panels, {}, None, alt), alt
