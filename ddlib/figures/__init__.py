@@ -2,6 +2,7 @@
 
 - ``style``: the figure style: colours, fonts, light and dark, SVG with an alternative text
 - ``lines``, ``maps``: curves and points over one axis; values over a plane
+- ``many``: rows and numbers of many networks, side by side
 - ``weights``: networks, Hinton diagrams, filters taken apart
 """
 

@@ -5,6 +5,7 @@ from .lines import (
     dots_in_one as dots_in_one,
     families as families,
 )
+from .many import gallery as gallery, readings as readings
 from .maps import (
     COLOUR_MAP as COLOUR_MAP,
     rmss_by_window as rmss_by_window,
