@@ -11,6 +11,7 @@ from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.hinton import CENTRE
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
+from workshop.chapters.widgets.pencil import SCRIPT, STYLE
 
 _ENTRIES = {
     "shoulder": (0, 0),
@@ -30,6 +31,8 @@ class WeighTheArm(CurveWidget):
     inertia : mapping
         The same names -> mean mass matrix that belongs to it, kg m², shape (2, 2).
     """
+
+    _esm, _css = SCRIPT, STYLE
 
     def __init__(self, gradients: Mapping[str, np.ndarray], inertia: Mapping[str, np.ndarray]):
         names = list(gradients)
