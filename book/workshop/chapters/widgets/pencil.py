@@ -52,7 +52,7 @@ class TurnTheParabola(CurveWidget):
         lines = {"needed": "what a heavier arm needs", "extra": "what the network adds"}
         torques = [
             Panel(
-                f"More torque, {joint}, N m",
+                f"{joint.capitalize()} torque, N m",
                 {f"{name}_{joint}": legend for name, legend in lines.items()},
                 "time, s",
                 t,
@@ -67,7 +67,7 @@ class TurnTheParabola(CurveWidget):
             ],
             [
                 Panel(
-                    "A direct row: shoulder to shoulder",
+                    "A direct row",
                     "row",
                     CENTRE,
                     _time(width),
@@ -141,7 +141,7 @@ class WriteTheLoad(CurveWidget):
         ]  # fmt: skip
         torques = [
             Panel(
-                f"Torque of the {joint}, N m",
+                f"{joint.capitalize()} torque, N m",
                 {f"{line}_{joint}": legends[line] for line in lines},
                 "time, s",
                 t,
@@ -152,8 +152,8 @@ class WriteTheLoad(CurveWidget):
             self._curves,
             [Parameter("load", "Kilograms in the hand", 0, 5, 0.5, "kg", grid=11)],
             [*rows, *torques],
-            alt="Four rows of direct weights, into which parabolas grow. Below them torques of both "
-            "joints over time, of the loaded arm, of the network as trained, and as written on.",
+            alt="Four rows of direct weights, into which parabolas grow. Below them torques of "
+            "both joints over time, of the loaded arm, of the network as trained, and as written on.",
             title="Write the load",
             scalars=[
                 Scalar("as_trained", "RMSS as trained", digits=3),

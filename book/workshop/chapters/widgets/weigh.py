@@ -58,7 +58,7 @@ class WeighTheArm(CurveWidget):
                     **shade,
                 ),
                 Panel(
-                    "Each sample adds ½ x² g, kg m²", "parts", CENTRE, time, kind="bars",
+                    "½ x² g, kg m²", "parts", CENTRE, time, kind="bars",
                     y_fit=True, **shade,
                 ),
                 Panel(
@@ -76,7 +76,7 @@ class WeighTheArm(CurveWidget):
                 Scalar("now", "Sum", "kg m²", 2),
                 Scalar("true", "The arm's own", "kg m²", 2),
             ],
-            note="Shaded: the samples that are added up so far.",
+            note="Each sample adds ½ x² g. Shaded: the samples that are added up so far.",
         )  # fmt: skip
 
     def _curves(self, reach, learnt, entry) -> dict:
