@@ -153,7 +153,7 @@ class WriteTheLoad(CurveWidget):
             [Parameter("load", "Kilograms in the hand", 0, 5, 0.5, "kg", grid=11)],
             [*rows, *torques],
             alt="Four rows of direct weights, into which parabolas grow. Below them torques of "
-            "both joints over time, of the loaded arm, of the network as trained, and as written on.",
+            "both joints over time: of the loaded arm, of the network as trained, and as written.",
             title="Write the load",
             scalars=[
                 Scalar("as_trained", "RMSS as trained", digits=3),
