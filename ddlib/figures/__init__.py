@@ -3,6 +3,7 @@
 - ``style``: the figure style: colours, fonts, light and dark, SVG with an alternative text
 - ``lines``, ``maps``: curves and points over one axis; values over a plane
 - ``loops``: poles and Bode plots of feedback loops
+- ``many``: rows and numbers of many networks, side by side
 - ``weights``: networks, Hinton diagrams, filters taken apart
 """
 

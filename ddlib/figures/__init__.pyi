@@ -7,6 +7,7 @@ from .lines import (
     families as families,
 )
 from .loops import poles_and_bode as poles_and_bode
+from .many import gallery as gallery, readings as readings
 from .maps import (
     COLOUR_MAP as COLOUR_MAP,
     rmss_by_window as rmss_by_window,

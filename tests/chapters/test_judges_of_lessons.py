@@ -75,10 +75,14 @@ def test_the_filter_with_the_recorded_torques_is_found_whatever_its_shape(capsys
         assert judged(whose_filters, *given, capsys=capsys, number=3).startswith(begins)
 
 
-def test_half_of_the_inertia_is_left_where_the_penalty_is_the_variance(capsys):
-    given = lambda p: 6.0 * 3e-4 / (3e-4 + p), 8e-4
-    answers = {3e-4: "Right: a penalty as small", 3.2e-4: "Right", 8e-4: "Wrong: this is what the",
-               3.5e-4: "Wrong: close", 1e-6: "Wrong: more than half", 1e-2: "Wrong: less than half",
-               -1.0: "Wrong: a penalty is positive"}  # fmt: skip
+def test_direct_weights_are_weighed_with_slope_and_gains(capsys):
+    given = 2000 * X**2, 0.2, 0.5, 0.01, X, 7.0
+    moment = 1000 * (X**4).sum()
+    mass = moment * 0.2 * 0.5 / 0.01
+    answers = {mass: "Right: the whole network has 7.0 kg", 7.0: "Wrong: this is the whole",
+               5 * mass: "Wrong: the output's slope", 2 * mass: "Wrong: the second moment",
+               0.2 * moment: "Wrong: this is in scaled", 7.0 - mass: "Wrong: this is what the",
+               -1.0: "Wrong: take the first part"}  # fmt: skip
     for answer, begins in answers.items():
-        assert judged(inertia_in_the_weights, answer, *given, capsys=capsys).startswith(begins)
+        text = judged(inertia_in_the_weights, answer, *given, capsys=capsys, number=3)
+        assert text.startswith(begins)

@@ -190,6 +190,10 @@ def meant() -> dict:
         "families": dict(panels={"": {"one": (FILTER, np.ones((5, 2)))}}),
         "by_case": dict(x=FILTER, cases={"one": FILTER}),
         "clouds": dict(panels={"one": (FILTER, FILTER)}, slope=1.0),
+        "gallery": dict(groups={"": np.ones((3, 2, 5))}),
+        "readings": dict(
+            panels={"inertia, kg m²": {"one": FILTER}}, truth={"inertia, kg m²": {"one": 1.0}}
+        ),
         "illustrate": dict(narrow_height=2.0),
         "rmss_by_window": dict(table={"one": {"test": {7: FILTER**2}}}, printed={"test": {7: 0.1}}),
         "quote": dict(value=1.0),

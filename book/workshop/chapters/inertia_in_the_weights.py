@@ -14,12 +14,12 @@ from ddlib.figures.style import FAINT, INK, TONES, Illustration, illustrate
 from ddlib.learning import TorqueModel, Weights, cases
 from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, split, true_states
 from ddlib.simulation import LOG_STEP
-from ddlib.tables import quote, scientific
+from ddlib.tables import quote
 from workshop.chapters import excitation, planted
-from workshop.chapters.exercises import Between, Exercise, judging
+from workshop.chapters.exercises import Exercise, judging
 from workshop.chapters.index import both
 from workshop.chapters.planted import shapes_and_sizes as shapes_and_sizes
-from workshop.chapters.whose_filters import given, of_torques, trained
+from workshop.chapters.whose_filters import given, trained
 from workshop.chapters.widgets.pencil import TurnTheParabola, WriteTheLoad
 from workshop.chapters.widgets.weigh import WeighTheArm as WeighTheArm
 from workshop.report import committed, results
@@ -101,14 +101,6 @@ def write() -> WriteTheLoad:
     return WriteTheLoad(model, cases(training, _WIDTH)[0], motion, inertia)
 
 
-def inertia_beside() -> Illustration:
-    """The shoulder's inertia in networks of the arm's torques and of unrelated ones."""
-    row = trial.row(_WIDTH)
-    sets = {"real": row["real"], **trial.matched(row)}
-    inertia = {kind: np.array(cell["gains"])[:, 0, 0, 2] for kind, cell in sets.items()}
-    return of_torques({"shoulder's inertia, kg m²": inertia}, _arm())
-
-
 @cache
 def paths() -> np.ndarray:
     """What each path of the landing page's network answers to the shoulder's motion.
@@ -165,7 +157,13 @@ def _arm() -> float:
 
 def _quoted() -> None:
     """Numbers of the lesson."""
-    quote("inertia-m11", np.median(np.array(trial.row(_WIDTH)["real"]["gains"])[:, 0, 0, 2]))
+    row = trial.row(_WIDTH)
+    shoulder, *unrelated = (
+        np.array(cell["gains"])[:, 0, 0, 2] for cell in (row["real"], *trial.matched(row).values())
+    )
+    quote("inertia-m11", np.median(shoulder))
+    quote("inertia-least", shoulder.min())
+    quote("inertia-unrelated", max(map(np.max, unrelated)))
     quote("inertia-m11-arm", _arm())
     quote("inertia-off", 100 * trial.calibrated("inertia", _WIDTH).value)
     lost = excitation.cell("state feedback", 1.0)
@@ -189,8 +187,8 @@ def _quoted() -> None:
         quote(f"inertia-load-{name}-state", planted.loaded(STATE_FEEDBACK.name, model))
         friction = planted.loaded(JOINT_DAMPING.name, model, "more viscous friction")
         quote(f"inertia-friction-{name}", friction)
-    row, whole = paths()[_carried()], paths().sum(0)
-    for name, values in {"row": row, "row-network": whole}.items():
+    carried, whole = paths()[_carried()], paths().sum(0)
+    for name, values in {"row": carried, "row-network": whole}.items():
         quote(f"inertia-{name}", values[2])
         quote(f"inertia-{name}-damping", values[1])
 
@@ -198,8 +196,8 @@ def _quoted() -> None:
 def _exercise(number: int, *given) -> Exercise:
     """An exercise.
 
-    `given` stiffness, inertia, frequency; nothing; the window's time; or the inertia by penalty,
-    and the formula's penalty.
+    `given` stiffness, inertia, frequency; the window's time; or a direct row, the output's mean
+    slope, gains of positions and torques, the window's time, and the whole network's inertia.
     """
     if number == 1:
         K, M, omega = given
@@ -218,36 +216,25 @@ def _exercise(number: int, *given) -> Exercise:
             "put q = sin(ωt) into K q + M q̈ and divide by q̈.",
             unit="kg m²",
         )
-    elif number == 2:
+    elif number == 3:
+        weights, slope, window, torque, x, M = given
+        alone = weights @ x**2 / 2
+        mass = slope * alone * window / torque
         slips = (
-            (1 / 3, "at λ½ itself half of the inertia is left, not all of it."),
-            (0.5, "this is the share at λ½."),
+            (M, "this is the whole network. Leave the hidden units out."),
+            (M - mass, "this is what the hidden units have."),
+            (alone * window / torque, "the output's slope passes on only a part of a change."),
+            (slope * alone, "this is in scaled numbers. What are the gains of data for?"),
+            (2 * mass, "the second moment counts half."),
         )
         return Exercise(
             "number",
-            0.25,
-            "the other three quarters hide behind position.",
+            mass,
+            f"the whole network has {M:.1f} kg m², so the hidden units have {M - mass:.1f}.",
             slips,
-            "put λ = 3 λ½ into the formula of the remaining share.",
-        )
-    elif number == 4:
-        kept, formula = given
-        tried = np.geomspace(1e-9, 1, 4000)
-        left = kept(tried)
-
-        half = tried[np.argmax(left < left[0] / 2)]
-        slips = (
-            (formula, "this is what the formula says. What does ridge find?"),
-            (Between(0, half), "more than half of the inertia is left there."),
-            (Between(half), "less than half of the inertia is left there."),
-        )
-        return Exercise(
-            "number",
-            half,
-            f"a penalty as small as this takes half. The formula predicts {scientific(formula)}.",
-            slips,
-            "a penalty is positive.",
-            tolerance=0.1,
+            "take the first part of the gradient, and its second moment.",
+            unit="kg m²",
+            tolerance=5e-3,
         )
     else:
         (x,) = given

@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 
 from ddlib.analysis import CLASSES
 from ddlib.dynamics import IMI_ARM
-from ddlib.figures import decomposed
 from ddlib.figures.style import FAINT, INK, Illustration, illustrate
 from ddlib.learning import (
     MATCHED,
@@ -21,9 +20,8 @@ from ddlib.learning import (
     train_ensemble,
 )
 from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, split, true_states
-from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote
-from workshop.chapters import index, planted, start
+from workshop.chapters import planted, start
 from workshop.chapters.convolution_filters import _dots, named_in_trial
 from workshop.chapters.exercises import Exercise, judging
 from workshop.chapters.widgets.starts import UnitFromFiveStarts as UnitFromFiveStarts
@@ -175,15 +173,6 @@ def names_beside() -> Illustration:
         }
         for name in ("acceleration", "velocity")
     })  # fmt: skip
-
-
-def carried_and_unrelated() -> Illustration:
-    """The landing page's row, and such a row of a network that learnt shifted torques."""
-    rows = {
-        "this arm's torques": index.carried_row(),
-        "torques shifted in time": index.unrelated_row(),
-    }
-    return decomposed({name: row / np.abs(row).max() for name, row in rows.items()}, LOG_STEP)
 
 
 def _quoted() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 
 import numpy as np
 
@@ -13,7 +14,11 @@ from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.hinton import CENTRE
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice, Parameter
+from ddlib.widgets.scripts import bundle, styles
 from workshop.report.pencil import knobs, moment_filters, turned, written
+
+_HERE = Path(__file__).parent
+SCRIPT, STYLE = bundle(_HERE / "pencil.js"), styles(_HERE / "pencil.css")
 
 _EVERY = 2  # samples of a torque: more are not seen
 _JOINTS = ("shoulder", "elbow")
@@ -37,6 +42,8 @@ class TurnTheParabola(CurveWidget):
         Torque that the arm's inertia takes along this motion, N m.
     """
 
+    _esm, _css = SCRIPT, STYLE
+
     def __init__(self, networks: Mapping[str, TorqueModel], windows, inertial):
         self._networks, self._windows, self._inertial = networks, windows, inertial
         names, width = list(networks), windows.shape[-1]
@@ -45,7 +52,7 @@ class TurnTheParabola(CurveWidget):
         lines = {"needed": "what a heavier arm needs", "extra": "what the network adds"}
         torques = [
             Panel(
-                f"More torque, {joint}, N m",
+                f"{joint.capitalize()} torque, N m",
                 {f"{name}_{joint}": legend for name, legend in lines.items()},
                 "time, s",
                 t,
@@ -61,7 +68,7 @@ class TurnTheParabola(CurveWidget):
             ],
             [
                 Panel(
-                    "A direct row: shoulder to shoulder",
+                    "A direct row",
                     "row",
                     CENTRE,
                     _time(width),
@@ -117,27 +124,27 @@ class WriteTheLoad(CurveWidget):
         Of a load in kg: what it adds to the mean mass matrix along the motion, kg m², (2, 2).
     """
 
+    _esm, _css = SCRIPT, STYLE
+
     def __init__(self, model: TorqueModel, training, motion: Callable, inertia: Callable):
         self._model, self._training = model, training
         self._motion, self._inertia = motion, inertia
         width, cases = training.shape[-1], len(motion(0.0)[0])
         t, lines = LOG_STEP * np.arange(cases)[::_EVERY], ("loaded", "trained", "written")
         legends = dict(zip(lines, ("the loaded arm", "as trained", "written")))
+        pairs = [(a, b) for b in range(2) for a in range(2)]  # joint, torque
+        trained = model.weights.direct_weights[0]
         rows = [
             Panel(
-                f"{a} to {b}",
-                f"row_{a}_{b}",
-                CENTRE,
-                _time(width),
-                kind="stems",
-                roles={f"row_{a}_{b}": "network"},
+                f"{_JOINTS[a]} to {_JOINTS[b]}", {f"row_{a}_{b}": "written"}, CENTRE,
+                _time(width), kind="stems", fixed={"as trained": trained[b, a]},
+                roles={"written": "network", "as trained": "before"},
             )
-            for b in _JOINTS
-            for a in _JOINTS
-        ]
+            for a, b in pairs
+        ]  # fmt: skip
         torques = [
             Panel(
-                f"Torque of the {joint}, N m",
+                f"{joint.capitalize()} torque, N m",
                 {f"{line}_{joint}": legends[line] for line in lines},
                 "time, s",
                 t,
@@ -148,16 +155,19 @@ class WriteTheLoad(CurveWidget):
         super().__init__(
             self._curves,
             [Parameter("load", "Kilograms in the hand", 0, 5, 0.5, "kg", grid=11)],
-            [*torques, *rows],
-            alt="Torques of both joints over time, of the loaded arm, of the network as trained, "
-            "and as written on; below them four rows of direct weights, into which parabolas "
-            "grow.",
+            [*rows, *torques],
+            alt="Four rows of direct weights, into which parabolas grow. Below them torques of "
+            "both joints over time: of the loaded arm, of the network as trained, and as written.",
             title="Write the load",
             scalars=[
                 Scalar("as_trained", "RMSS as trained", digits=3),
                 Scalar("as_written", "RMSS as written", digits=3),
-                Scalar("added", "Written into the shoulder's row", "kg m²", 2),
+                *(
+                    Scalar(f"more_{a}_{b}", f"Written, {_JOINTS[a]} to {_JOINTS[b]}", "kg m²", 1)
+                    for a, b in pairs
+                ),
             ],
+            note="Stems: direct weights as written. Line: as trained.",
         )
 
     def _curves(self, load) -> dict:
@@ -172,12 +182,11 @@ class WriteTheLoad(CurveWidget):
         curves = {
             "as_trained": rmss(told["trained"], torque),
             "as_written": rmss(told["written"], torque),
-            "added": extra[0, 0],
         }
         for j, joint in enumerate(_JOINTS):
             for name, values in told.items():
                 curves[f"{name}_{joint}"] = values[::_EVERY, j]
-            for i, other in enumerate(_JOINTS):
-                row = model.weights.direct_weights[0, j, i]
-                curves[f"row_{other}_{joint}"] = row
+            for i in range(2):
+                curves[f"row_{i}_{j}"] = model.weights.direct_weights[0, j, i]
+                curves[f"more_{i}_{j}"] = extra[j, i]
         return curves

@@ -13,6 +13,7 @@ from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.hinton import CENTRE, JOINTS, share_panel
 from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.parts.parameters import Choice
+from workshop.chapters.widgets.pencil import SCRIPT, STYLE
 
 _SHARES = dict(enumerate(("pos.", "vel.", "acc.", "jerk", "rest")))
 
@@ -25,6 +26,8 @@ class UnitFromFiveStarts(CurveWidget):
     networks : mapping
         Size of the start -> `Weights` of one network before training, and of the same one after.
     """
+
+    _esm, _css = SCRIPT, STYLE
 
     def __init__(self, networks: Mapping[float, tuple[Weights, Weights]]):
         self._networks = dict(networks)

@@ -11,6 +11,7 @@ from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.hinton import CENTRE
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
+from workshop.chapters.widgets.pencil import SCRIPT, STYLE
 
 _ENTRIES = {
     "shoulder": (0, 0),
@@ -30,6 +31,8 @@ class WeighTheArm(CurveWidget):
     inertia : mapping
         The same names -> mean mass matrix that belongs to it, kg m², shape (2, 2).
     """
+
+    _esm, _css = SCRIPT, STYLE
 
     def __init__(self, gradients: Mapping[str, np.ndarray], inertia: Mapping[str, np.ndarray]):
         names = list(gradients)
@@ -55,7 +58,7 @@ class WeighTheArm(CurveWidget):
                     **shade,
                 ),
                 Panel(
-                    "Each sample adds ½ x² g, kg m²", "parts", CENTRE, time, kind="bars",
+                    "½ x² g, kg m²", "parts", CENTRE, time, kind="bars",
                     y_fit=True, roles={"parts": "network"}, **shade,
                 ),
                 Panel(
@@ -73,7 +76,7 @@ class WeighTheArm(CurveWidget):
                 Scalar("now", "Sum", "kg m²", 2),
                 Scalar("true", "The arm's own", "kg m²", 2),
             ],
-            note="Shaded: the samples that are added up so far.",
+            note="Each sample adds ½ x² g. Shaded: the samples that are added up so far.",
         )  # fmt: skip
 
     def _curves(self, reach, learnt, entry) -> dict:
