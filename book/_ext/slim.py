@@ -38,7 +38,7 @@ SCROLLED = "pst-scrollable-table-container"
 CSS_DATA = re.compile(r"""url\((?:"(data:(?:[^"\\]|\\.)*)"|(data:[^)]*))\)""")
 # Rules of single icons: `.fa-sun:before{content:"\\f185"}`, 1,900 of them.
 ICON_RULES = re.compile(r"(?<=[};])(?:\.fa-[\w.-]+(?::{1,2}\w+)?,?)+\{[^{}]*\}")
-ICON_FONTS = re.compile(r"@font-face\s*\{[^}]*\}")  # the theme has no others
+ICON_FONTS = re.compile(r"@font-face\s*\{[^}]*Font ?Awesome[^}]*\}")
 ICON_LETTER = re.compile(r"""(["'])(?:\\[ef][0-9a-f]{3}|[\ue000-\uf8ff])\1""", re.IGNORECASE)
 
 

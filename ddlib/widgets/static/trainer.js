@@ -194,7 +194,7 @@ function unitSheet(spec) {
       const [first, last] = [top + 32, top + high - FOOT - 4]; // above: a name, the scale
       const middle = (first + last) / 2;
       const tallest = JOINTS.reduce((most, j) => all[2 * c + j].reduce((a, w) => Math.max(a, Math.abs(w)), most), 1e-9);
-      pen.font = "13px system-ui, sans-serif";
+      pen.font = "13px 'Source Sans 3', system-ui, sans-serif";
       write(cell, left, top + 9, "left", colours.ink);
       let right = left + wide;
       for (const j of [...JOINTS].reverse()) {
@@ -202,7 +202,7 @@ function unitSheet(spec) {
         write(name, right, top + 9, "right", colours[j ? "elbow" : "shoulder"]);
         right -= name ? pen.measureText(name).width + 7 : 0;
       }
-      pen.font = "11px system-ui, sans-serif";
+      pen.font = "11px 'Source Sans 3', system-ui, sans-serif";
       line(left, middle, left + wide, middle, colours.soft);
       for (const [t, x, align] of [[-half, 0, "left"], [0, wide / 2, "center"], [half, wide, "right"]]) {
         line(left + x, first, left + x, last, colours.line);

@@ -43,7 +43,7 @@ export function timeChart({ height, label, low, high, lines, bottom = false }) {
     const x = (i) => MARGIN.left + room * (1 - (samples.length - 1 - i + phase) / SHOWN);
     const y = (value) => top + ((b - value) / (b - a)) * (floor - top);
     pen.clearRect(0, 0, width, height);
-    pen.font = "12px system-ui, sans-serif";
+    pen.font = "12px 'Source Sans 3', system-ui, sans-serif";
     pen.fillStyle = colours.ink;
     pen.textBaseline = "middle";
     pen.textAlign = "right";
@@ -136,7 +136,7 @@ export function strip({ height, label, width: samplesInWindow, lows, highs }) {
     }
     pen.restore();
     pen.globalAlpha = 1;
-    pen.font = "12px system-ui, sans-serif";
+    pen.font = "12px 'Source Sans 3', system-ui, sans-serif";
     pen.textBaseline = "middle";
     pen.textAlign = "left";
     JOINTS.forEach((j) => {
