@@ -134,14 +134,15 @@ class Page(Rewriter):
         elif "search-button-field" in classes:  # its words say what it is
             kept = {key: own[key] for key in own if key not in ("title", "aria-label")}
             self.change(self.start, self.end, tag(name, kept))
+        elif own.get("id") == "pst-primary-sidebar":  # closed until it is asked for
+            closed = {"class": f"{own['class']} pst-sidebar-hidden", "role": "complementary"}
+            self.change(self.start, self.end, tag(name, {**own, **closed}))
         elif role := self.role(own, classes):
             self.change(self.start, self.end, tag(name, {**own, "role": role}))
 
     @staticmethod
     def role(own: dict[str, str], classes: list[str]) -> str:
         """What assistive technology should take an element for; empty if it is as it should be."""
-        if own.get("id") == "pst-primary-sidebar":
-            return "complementary"
         if own.get("role") == "doc-biblioentry":  # deprecated
             return "listitem"
         return "presentation" if "indextable" in classes else ""
