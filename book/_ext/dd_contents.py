@@ -1,23 +1,29 @@
-"""Evidence stands under its lesson in the contents: without numbers, and *Next* passes it by.
+"""The lessons of the walk alone have numbers, and a strip of dots below their titles.
 
-Its figures are numbered on from those of its lesson.
+Figures of all pages are numbered: in optional parts of the contents as those of a chapter, on a
+page of evidence on from those of its lesson. *Next* passes evidence by.
 """
 
 from __future__ import annotations
 
 from hashlib import sha1
+from html import escape
+from pathlib import Path
 
 from docutils import nodes
+from lessons import walk
 
 EVIDENCE = "book/evidence/"
+TITLE_ENDS = "</h1>"
 
 
 def take_numbers_away(app, env):
-    """From headings of evidence and their entries in the contents, once all are numbered."""
+    """From headings beside the walk and their entries in the contents, once all are numbered."""
+    numbered = {of.page for of in walk(Path(env.srcdir))}
     for page, toc in env.tocs.items():
-        if page.startswith(EVIDENCE):
+        if page not in numbered:
             env.toc_secnumbers.pop(page, None)
-            for entry in toc.findall(nodes.reference):
+            for entry in (env.titles[page], *toc.findall(nodes.reference)):
                 entry.attributes.pop("secnumber", None)
 
 
@@ -53,8 +59,31 @@ def lead_on(app, page, template, context, doctree):
             context[way] = {"link": app.builder.get_relative_uri(page, other), "title": text}
 
 
+def dots(pages: dict[str, str], here: str) -> str:
+    """Where one is in the walk, as links: titles by address; `here` is the address of the page."""
+    items = []
+    for k, (link, title) in enumerate(pages.items(), 1):
+        name = f"Lesson {k}: {escape(title)}"
+        at = ' aria-current="page"' if link == here else ""
+        inside = f'<a href="{link}" title="{name}"{at}><span>{name}</span></a>'
+        items.append(f"<li>{inside}</li>")
+    place = f"<span>{list(pages).index(here) + 1} of {len(pages)}</span>"
+    return f'<nav class="walk" aria-label="The walk">{place}<ol>{"".join(items)}</ol></nav>'
+
+
+def show_place(app, page, template, context, doctree):
+    """Put the dots below the title of a lesson of the walk."""
+    walked = [of.page for of in walk(Path(app.srcdir))]
+    if page in walked:
+        link = {other: app.builder.get_relative_uri(page, other) or "#" for other in walked}
+        titles = {link[other]: app.env.titles[other].astext() for other in walked}
+        strip = dots(titles, link[page])
+        context["body"] = context["body"].replace(TITLE_ENDS, TITLE_ENDS + strip, 1)
+
+
 def setup(app):
     app.connect("env-get-updated", write_all, priority=900)  # when all are numbered
     app.connect("env-check-consistency", take_numbers_away)
     app.connect("html-page-context", lead_on)
+    app.connect("html-page-context", show_place)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

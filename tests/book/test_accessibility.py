@@ -16,7 +16,12 @@ def test_narrow_page_breaks_no_rule(site, visit):
 
 
 def test_what_opens_breaks_no_rule(site, visit):
-    for opener in (".search-button-field", ".dropdown-download-buttons > button"):
+    for opener in (
+        ".search-button",
+        ".dropdown-download-buttons > button",
+        ".primary-toggle",
+        ".secondary-toggle",
+    ):
         opened = visit(f"{site}/{PAGES[1]}.html")
         opened.page.locator(opener).click()
         chromium.settle(opened.page)

@@ -26,6 +26,7 @@ EVIDENCE_OF = _chapters(numbered=True)
 """Each lesson's pages with what stands behind it."""
 CHAPTERS = list(EVIDENCE_OF)  # all in the shape of a lesson
 EVIDENCE = [page for below in EVIDENCE_OF.values() for page in below]
+TEN = [page["file"] for part in TOC["parts"][:3] for page in part["chapters"]]  # the walk
 LESSONS = [page["file"] for part in TOC["parts"][:4] for page in part["chapters"]]
 BACK_MATTER = [page for own, below in _chapters(numbered=False).items() for page in (own, *below)]
 API = [page for page in BACK_MATTER if page.startswith("book/api")]
