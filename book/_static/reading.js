@@ -65,3 +65,8 @@ addEventListener("load", () => {
     button.setAttribute("aria-label", `Copy code: ${name}, ${known.get(name)}`);
   }
 });
+
+// A place that is chosen from the page's contents is in sight at once.
+document.querySelector("#pst-secondary-sidebar-modal")?.addEventListener("click", (event) => {
+  if (event.target.closest("a")) event.currentTarget.close();
+});
