@@ -15,6 +15,7 @@ from lessons import ON_YOUR_OWN, SOLUTION
 from myst_nb.sphinx_ import HideCodeCellNode, depart_HideCellInput
 from sphinx.transforms import SphinxTransform
 
+FIRST = "Check yourself"  # what stands before the exercises, and so above them
 NUMBER = re.compile(r"(\d+)\. ")
 KIND = re.compile(r"\s*(\(an? \w+\))\.\s*")
 NAMED = "\n"  # in a prompt: what stands after it is not seen
@@ -62,7 +63,7 @@ class HeadExercises(SphinxTransform):
 
     def apply(self, **kwargs):
         for section in list(self.document.findall(nodes.section)):
-            if section[0].astext() == ON_YOUR_OWN:
+            if section[0].astext() in (ON_YOUR_OWN, FIRST):
                 self.head(section)
 
     def head(self, section: nodes.section):
