@@ -161,6 +161,7 @@ _RC = {
     "axes.labelcolor": INK,
     "axes.labelsize": 9.5,
     "axes.linewidth": 0.7,
+    "axes.prop_cycle": mpl.cycler(color=(INK, *COLOURS)),  # of what says no role
     "axes.spines.right": False,
     "axes.spines.top": False,
     "axes.titlecolor": INK,
