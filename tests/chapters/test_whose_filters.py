@@ -42,11 +42,11 @@ def test_a_guess_is_judged_counted_and_kept(page_with):
     page = page_with(widget)
     verdict, score = page.locator(".verdict"), page.locator(".score")
     assert "Which of the two" in verdict.inner_text() and score.inner_text() == "no guess yet"
-    assert page.locator(".row.c0").count() == 0 and page.locator(".row").count() == 40
+    assert page.locator(".row.even").count() == 0 and page.locator(".row").count() == 40
     right = answers(widget)
     page.get_by_role("button", name=f"{right[0]} learnt this arm").press("Enter")
     assert verdict.inner_text().startswith("Right:") and "Remark 0." in verdict.inner_text()
-    assert page.locator(".row.c0").count() == 20
+    assert page.locator(".row.even").count() == 20
     counts = page.locator(".told").all_inner_texts()
     assert any("20\u00a0acceleration" in text for text in counts)
     page.get_by_role("button", name="Next round").click()
