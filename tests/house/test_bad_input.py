@@ -136,6 +136,7 @@ def meant() -> dict:
         "loop_gain": one, "closed_loop": loop, "opened_loop": {**loop, "joint": 0},
         "late_poles": dict(joints=plant), "margins": dict(loop=control.loop_gain(1.0, 0.5, 40.0)),
         "proportional_limit": dict(inertia=1.0, viscous=0.5),
+        "poles_and_bode": dict(loops={"one": control.loop_gain(1.0, 0.5, 40.0)}, decay=1.0),
         "noise_gain": dict(weights=FILTER), "EstimatedVelocity": dict(weights=FILTER),
         "Feedforward": dict(model=ARM), "feedforward_system": dict(model=ARM),
         "keep": dict(extents_deg=trajectories.APPENDIX_I),
