@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator
 
-from ddlib._check import finite_array, instance, number, one_of, shaped
+from ddlib._check import finite_array, instance, number, one_of, series, shaped, texts
 from ddlib.analysis import decompose
 from ddlib.figures.style import (
     FAINT,
@@ -235,15 +235,12 @@ def squares(rows, names: Sequence[str], scale=None) -> Illustration:
         Default: `rows` themselves. Larger ones are cut.
     """
     rows = finite_array("rows", rows)
-    names, scale = list(names), rows if scale is None else finite_array("scale", scale)
-    if rows.ndim not in (2, 3) or (rows.ndim == 3 and rows.shape[1] != len(JOINTS)):
-        raise ValueError(
-            f"rows must have the shape (rows, width) or (rows, 2, width), got {rows.shape}"
-        )
-    if scale.shape != rows.shape or len(names) != len(rows):
-        raise ValueError(
-            f"scale and names must fit rows {rows.shape}, got {scale.shape}, {len(names)}"
-        )
+    if rows.size == 0 or rows.ndim not in (2, 3) or rows.shape[1:-1] not in ((), (len(JOINTS),)):
+        shape = "(rows, width) or (rows, 2, width)"
+        raise ValueError(f"rows must have the shape {shape}, got {rows.shape}")
+    names = series("names", names, str)
+    texts("names", names, len(rows))
+    scale = rows if scale is None else shaped("scale", scale, rows.shape)
     blocks = rows[:, None] if rows.ndim == 2 else rows
     parts = blocks / np.maximum(abs(scale).reshape(blocks.shape).max(-1, keepdims=True), 1e-300)
     height, joints, width = parts.shape
