@@ -21,6 +21,8 @@ const QUIET = 700; // ms without a change after which the figure is described an
 // parameter, see frame.js) with changed(), and resets (called by Reset).
 export const extras = [];
 
+const KERNEL = "The kernel sends exact values. Until they come, you see values computed beforehand.";
+
 // What a widget that computes in the page sets (`Live` in table.py): of the view, curves by name; they
 // end in NaN where a run is over.
 let live = null;
@@ -74,7 +76,9 @@ function build({ model, el }) {
   const problem = make("p", { class: "problem", role: "alert", hidden: "" });
   const spoken = make("p", { class: "spoken", "aria-live": "polite" });
   view.say = (text) => (spoken.textContent = text);
-  const footer = make("p", { class: "footer" }, footerText(model, spec, table));
+  const exact = model.kernelless || spec.live || !table.curves.length;
+  const footer = make("p", { class: "footer" }, exact ? "" : KERNEL);
+  footer.hidden = exact;
   const told = scalars.length ? [view.numbers] : [];
   const remark = spec.note ? [make("p", { class: "remark" }, spec.note)] : [];
   el.replaceChildren(frame.el, view.top, ...told, charts, ...remark, note, problem, footer, spoken);
@@ -218,14 +222,6 @@ function build({ model, el }) {
 function codeOf(spec, values) {
   const texts = spec.parameters.map((p, k) => [p.name, python(values[k])]);
   return filled(spec.code, Object.fromEntries(texts));
-}
-
-function footerText(model, spec, table) {
-  if (!table.curves.length) return "This page computes while you move things.";
-  const points = spec.parameters.map((p) => p.grid).join(" × ");
-  return model.kernelless || spec.live
-    ? `Computed for all ${points} settings when the page was built.`
-    : "The kernel sends exact values. Until they come, you see values computed beforehand.";
 }
 
 const render = safely(build);

@@ -347,7 +347,7 @@
     cell.el.classList.remove("is-asked-below"); // the page's own field is no longer all there is
     input.hidden = true;
     input.after(cell.area, tools);
-    if (cell.handles?.length) tools.after(sliders(cell));
+    if (cell.handles?.length) cell.el.closest("section").after(sliders(cell)); // it stays in view
     fit(cell);
   }
 
@@ -428,8 +428,10 @@
       });
       return make("div", {}, make("label", { for: id }, name), range, shown);
     });
-    const title = make("summary", {}, "Handles: each moves a number of the code above");
-    return make("details", { class: "live-handles", open: "" }, title, make("div", {}, ...rows));
+    const title = make("summary", {}, "Handles: each moves a number of Change this");
+    const panel = make("details", { class: "live-handles" }, title, make("div", {}, ...rows));
+    panel.open = matchMedia("(min-width: 48rem)").matches; // on a phone it would cover the figure
+    return panel;
   }
 
   // --- what follows from a change ---
