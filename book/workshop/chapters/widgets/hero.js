@@ -103,7 +103,7 @@ function build({ model, el }) {
     ); // prettier-ignore
     return { name, stems, threads, badge, zero: line("zero"), most: Math.max(...row.map(Math.abs)) };
   });
-  const note = text("note");
+  const note = text("small");
   const keys = [[path("arc truth"), text("y0", "torque")], [path("arc told"), text("y0", "what A and B say")]];
   const legend = [group("legend-truth", ...keys[0]), group("legend-told", ...keys[1])];
   const scales = networks.map(({ name }) => {
@@ -119,7 +119,7 @@ function build({ model, el }) {
     const g = group("scale", ...Object.values(parts), ...pans.flatMap((p) => [p.ropes, p.dish, p.block.g, p.name]), verdict);
     return { ...parts, pans, verdict, g };
   });
-  const under = text("note", "Weighed: all rows of each network.");
+  const under = text("small", "Weighed: all rows of each network.");
   const svg = make(
     "svg",
     { class: "stage", role: "group", "aria-label": "An arm, the windows of its joints, two rows of weights and two balances" },

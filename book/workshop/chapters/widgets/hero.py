@@ -166,7 +166,7 @@ def still(pair: Sequence[Twin], arm: float) -> Illustration:
             _draw_balance(axis, twin.name, arm, scale)
         largest = " and ".join(f"{_row(x)[1]:.2g} in {x.name}" for x in pair)
         words = f"each row to its own height: the largest weight is {largest}"
-        axis.text(609, 518, words, ha="center", fontsize=9)
+        axis.text(609, 518, words, ha="center", fontsize=10.5)
 
     return illustrate(draw, _ALT.format(arm=arm), 1120 / 96, 550 / 96)
 
