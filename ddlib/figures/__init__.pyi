@@ -22,7 +22,6 @@ from .style import (
     ROLES as ROLES,
     TONES as TONES,
     Illustration as Illustration,
-    Look as Look,
     check_label as check_label,
     illustrate as illustrate,
     legend_above as legend_above,

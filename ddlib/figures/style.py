@@ -128,7 +128,19 @@ def looks(names: Iterable[str], roles: Mapping[str, str] | None = None) -> dict[
         All that are drawn, in order.
     roles : mapping, optional
         Roles of names that do not say them.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a name is no text, or a role is none of `TONES`.
     """
+    if isinstance(names, str) or not isinstance(names, Iterable):
+        raise TypeError(f"names must be texts, got {names!r:.60}")
+    names = list(names)
+    for name in names:
+        text("names", name)
+    for name, role in (roles or {}).items():
+        one_of(f"role of {name!r}", role, tuple(TONES))
     names = list(dict.fromkeys(names))
     named = {name: match.lastgroup for name in names if (match := _NAMED.search(name))}
     named |= {name: role for name, role in (roles or {}).items() if name in names}

@@ -195,7 +195,7 @@ def meant() -> dict:
         "readings": dict(
             panels={"inertia, kg m²": {"one": FILTER}}, truth={"inertia, kg m²": {"one": 1.0}}
         ),
-        "illustrate": dict(narrow_height=2.0),
+        "illustrate": dict(narrow_height=2.0), "looks": dict(names=["measured", "one"]),
         "squares": dict(rows=np.ones((2, 7)), names=LABELS, scale=np.ones((2, 7))),
         "rmss_by_window": dict(table={"one": {"test": {7: FILTER**2}}}, printed={"test": {7: 0.1}}),
         "quote": dict(value=1.0),

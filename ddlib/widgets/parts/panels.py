@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddlib._check import finite_array, integer, number, one_of
-from ddlib.figures import TONES, Look, looks
+from ddlib.figures import looks
+from ddlib.figures.style import Look
 
 
 @dataclass(frozen=True)
@@ -90,8 +91,7 @@ class Panel:
         if len(cursor) > 2:
             raise ValueError(f"cursor {what} must be one or two names, got {cursor}")
         ticks = [(number(f"ticks {what}", place), str(text)) for place, text in self.ticks or ()]
-        for name, role in (self.roles or {}).items():
-            one_of(f"role of {name!r} {what}", role, tuple(TONES))
+        looks(legend.values(), self.roles)  # refuses what is no role
         checked = {"curves": legend, "x": x, "fixed": fixed, "cursor": cursor, "ticks": ticks}
         checked["y_range"] = self._checked_range(what)
         checked["limits"] = self._checked_limits(what)
