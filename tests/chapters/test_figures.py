@@ -308,7 +308,6 @@ FIGURES = {
         shows=[[[(0.1, 0), (0.2, 0)], [(0.2, 1), (0.4, 1)], [(0.3, 1)]]], log="x",
     ),
     "six ways": figure(rivals.from_window_to_torque),
-    "parity": figure(rivals.parity_drawn),
     "units at work": figure(global_view.at_work),
     "against": figure(
         partial(

@@ -309,19 +309,6 @@ def affordable(learner: str) -> Measured:
     return Measured(total / could, f"{total:,.0f} of {could:,.0f} in 2 ms")
 
 
-def asked() -> Table:
-    """Median errors on a faster motion and on a circle, after ten trials of another motion."""
-    names = {"feedback alone": PLAIN} | {n: n for n in ("exact terms", "generic terms", "memory")}
-    rows = [
-        (name, *(significant(np.median(on(m, key)), 2) for m in ("in half the time", "circle")))
-        for name, key in names.items()
-    ]
-    practised = results.read("loop-conditions")["practised"]["joint damping"]["in step"]
-    scaled = significant(np.median(practised["in half the time"]["memory, scaled"]), 2)
-    rows.append(("memory, multiplied by four (other draws)", scaled, "–"))
-    return Table(("learner", "in half the time, mm", "on a circle, mm"), rows)
-
-
 def courses() -> Table:
     """Median errors in the first trial, and on the family before, with and after the load."""
     names = {"feedback alone": PLAIN, "network's last layer": "last layer"}
@@ -340,6 +327,9 @@ def _quoted() -> None:
     """The numbers of the prose."""
     quote("loop-seeds", on("the same", PLAIN).size)
     quote("loop-none-circle", np.median(on("circle", PLAIN)))
+    again = results.read("loop-conditions")["practised"]["joint damping"]["in step"]
+    quote("loop-memory-scaled", np.median(again["in half the time"]["memory, scaled"]))
+    quote("loop-none-faster", np.median(on("in half the time", PLAIN)))
     quote("loop-linear-circle", np.median(on("circle", "linear filter")))
     practised = results.read("loop-conditions")["practised"]["joint damping"]
     quote("loop-step", np.median(practised["out of step"]["circle"]["linear filter"]))

@@ -17,22 +17,20 @@ from beyond.rivals.cmac import CMAC
 from beyond.rivals.identified import Identified, Linear
 from beyond.rivals.protocol import Cases
 from beyond.rivals.tables import CellTable
+from beyond.studies.checks.smoothers import CUTOFFS
 from ddlib.figures import (
     COLOURS,
     FAINT,
     Illustration,
     check_label,
     illustrate,
-    legend_above,
 )
 from ddlib.figures.style import DASHES, INK, JOINTS, NARROW, TONES
 from ddlib.setups import JOINT_DAMPING
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, quote
-from workshop.chapters.backpropagation import NETWORKS
 from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.report import committed, results
-from workshop.report.parity import parity, patterns
 
 _RUBBING, _PARTS = "linear filter with friction", ("trajectory 6", "inside", "outside")
 _BESIDE = {
@@ -44,11 +42,18 @@ _BESIDE = {
     "filters and equations": "equations with learnt filters",
     "Butterworth filter": "equations after a Butterworth filter",
     "Kalman smoother": "equations after a Kalman smoother",
+    "equations and networks": "equations and networks",
+    "networks on states": "networks on states",
+    "recurrent": "recurrent network",
     "network of 1988": "network of 1988",
 }
 _SMOOTHED = {
     "learnt": "filters and equations",
     "butterworth": "Butterworth filter",
+}
+_ELSEWHERE = {
+    "equations": "identified",
+    "linear filter with friction": _RUBBING,
 }
 _LABELS = {
     "identified": "equations",
@@ -133,14 +138,38 @@ def inertias_off(way: str, arm: str = "the report's arm") -> np.ndarray:
 
 @cache
 def _entered() -> dict:
-    """All rivals that were tuned, and the two smoothers, with errors and stored numbers."""
+    """All rivals that were tuned, with errors, stored numbers and settings tried, by day."""
     names = results.read("smoothers")["arms"]["the report's arm"]["names"]
     more = {
-        name: {"errors": one["errors"], "count": [len(names) + 1]}  # parameters, and the knob
+        name: {"errors": one["errors"], "count": [len(names) + 1], "tried": [len(CUTOFFS)]}
         for name, one in smoothed().items()
         if name not in _tuned()
     }
+    for name, days in _today()["rivals"].items():
+        errors = {part: [day["errors"][part] for day in days] for part in days[0]["errors"]}
+        kept = {key: [day[key] for day in days] for key in ("count", "tried")}
+        more[name] = {"errors": errors, **kept}
     return _tuned() | more
+
+
+def _today() -> dict:
+    return results.read("tuned-today")
+
+
+def elsewhere_table() -> Table:
+    """Errors of some rivals on trajectory 6 and on circles, and how sure ensembles are of both."""
+    rows = []
+    for name, errors in _today()["circles"].items():
+        six = np.median(_errors(_ELSEWHERE[name]))
+        rows.append((_BESIDE[_ELSEWHERE[name]], f"{six:.3f}", f"{np.median(errors):.3f}", "–", "–"))
+    for name in ("networks on states", "equations and networks"):
+        days = [day["circles"] for day in _today()["rivals"][name]]
+        told = {k: [np.median([d[part][k] for d in days]) for part in ("trajectory 6", "circles")]
+                for k in ("rmss", "covered")}  # fmt: skip
+        errors = [f"{x:.3f}" for x in told["rmss"]]
+        rows.append((name, *errors, *(f"{100 * x:.0f} %" for x in told["covered"])))
+    heads = "trajectory 6", "circles", "inside its 95 %, trajectory 6", "on circles"
+    return Table(("rival", *heads), rows)
 
 
 def _errors(name: str, part: str = "trajectory 6") -> np.ndarray:
@@ -155,8 +184,10 @@ def ratios_table() -> Table:
         for part in _PARTS:
             ratios = over(name, part)
             cells.append(f"{np.median(ratios):.2f} ({ratios.min():.2f} to {ratios.max():.2f})")
-        rows.append((label, *cells, f"{np.median(_entered()[name]['count']):,.0f}"))
-    heads = "trajectory 6", "square, in the hull", "outside the hull", "numbers stored"
+        one = _entered()[name]
+        stored, tried = (f"{np.median(one[key]):,.0f}" for key in ("count", "tried"))
+        rows.append((label, *cells, stored, tried))
+    heads = "trajectory 6", "in the hull", "outside", "numbers stored", "settings tried"
     return Table(("rival", *heads), rows)
 
 
@@ -334,41 +365,6 @@ def from_window_to_torque() -> Illustration:
     return illustrate(draw, alt, 7.2, 4.7)
 
 
-def parity_drawn() -> Illustration:
-    """Parity of three bits as corners of a cube, and what it takes to represent that of many."""
-    many = np.arange(2, 11)
-    terms = [2**n for n in many]
-    wired = [NETWORKS["binary counter"](int(n)).coefficients for n in many]
-
-    def draw(figure: Figure):
-        cube, counts = figure.subplots(1, 2, width_ratios=(1, 1.6))
-        corners = patterns(3)
-        places = corners @ np.array([[1.0, 0.0], [0.45, 0.35], [0.0, 1.0]])
-        for a, b in zip(*np.triu_indices(8)):
-            if abs(corners[a] - corners[b]).sum() == 1:
-                cube.plot(*places[[a, b]].T, color=FAINT, lw=1.0, zorder=1)
-        for bits, place, even in zip(corners, places, parity(corners)):
-            look = dict(mfc=INK if even else "none", mec=INK, ms=9)
-            cube.plot(*place, "o", **look)
-            digits = "".join(map(str, bits))
-            side = dict(ha="left", va="bottom") if bits[1] else dict(ha="right", va="top")
-            shift = (6, 5) if bits[1] else (-6, -5)
-            cube.annotate(digits, place, shift, textcoords="offset points", **side)
-        cube.set(xlim=(-0.5, 1.9), ylim=(-0.4, 1.7), aspect="equal")
-        cube.set_axis_off()
-        counts.plot(many, terms, "o-", color=INK, ms=4, label="polynomial")
-        counts.plot(many, wired, "s--", color=TONES["network"], ms=4, label="network")
-        counts.set(yscale="log", xlabel="bits, number", ylabel="coefficients, number")
-        legend_above(figure, *counts.get_legend_handles_labels())
-
-    alt = (
-        "A cube whose corners are the eight inputs of three bits; every edge joins a filled corner "
-        f"and an empty one. Beside it coefficients over bits: at ten bits {terms[-1]:,} of a "
-        f"polynomial and {wired[-1]} of a network."
-    )
-    return illustrate(draw, alt, 6.6, 2.5)
-
-
 def over(name: str, part: str = "trajectory 6", against: str = "network of 1988") -> np.ndarray:
     """A rival's error over another's, day by day."""
     a, b = _errors(name, part), _errors(against, part)
@@ -394,9 +390,10 @@ def _quoted() -> None:
     quote("rivals-off-times", learnt / butterworth)
     of_late_sensor = smoothed("late sensor")[study["own"]]
     quote("rivals-late-applied", np.median(of_late_sensor["applied"]["trajectory 6"]))
-    won = over("Lagrangian network") < 1
-    quote("rivals-lagrangian-won", int(won.sum()))
-    quote("rivals-lagrangian-days", len(won))
+    beside = [day["circles"]["circles"] for day in _today()["rivals"]["equations and networks"]]
+    quote("rivals-beside-circles", np.median([day["rmss"] for day in beside]))
+    quote("rivals-beside-covered", 100 * np.median([day["covered"] for day in beside]))
+    quote("rivals-equations-circles", np.median(_today()["circles"]["equations"]))
     quote("rivals-network-untuned", np.median(untuned["errors"]["trajectory 6"]))
     ahead = [better(part).text.split(":")[0].split(" of ") for part in _PARTS]
     (six, every), (inside, _), (outside, _) = ahead

@@ -202,7 +202,6 @@ def _quoted() -> None:
         one = results.read("run-time")["shares"].index(1.0)
         stopped = np.array(reading["inside"]["network, 5"]["stopped"])
         quote(f"run-time-late-stopped{tail}", 100 * np.mean(stopped[:, one]))
-        quote(f"run-time-bound-share{tail}", 100 * np.max(reading["bound"]["share"]))
     pole = _reading()["inside"]["network, 5"]["poles"][0][0]
     quote("run-time-doubling", CONTROL_STEP * np.log(2) / np.log(pole))
     soft = JOINT_DAMPING_VISCOUS[0] / JOINT_DAMPING.controller.kp[0]
@@ -216,7 +215,6 @@ def _quoted() -> None:
         heavy = np.median(_reading()["changed"]["load"]["10"][line])
         quote(f"run-time-load-{line.split()[-1]}", heavy)
     quote("run-time-inside-onset", np.median(onsets()[0]))
-    quote("run-time-rank", predicts(width=21).value)
 
 
 def square_figure() -> Illustration:
