@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ddlib._check import instance, mapping, number, text
-from ddlib.figures.style import COLOURS, DASHES, FAINT, Illustration, illustrate
+from ddlib.figures.style import FAINT, Illustration, illustrate, looks
 
 
 def poles_and_bode(
@@ -43,8 +43,8 @@ def poles_and_bode(
     def draw(figure: Figure):
         places = [["loci", "gain"], ["loci", "phase"]]
         loci, *pair = figure.subplot_mosaic(places).values()
-        for k, (name, L) in enumerate(loops.items()):
-            look = {"color": COLOURS[k % len(COLOURS)], "ls": DASHES[k % len(DASHES)]}
+        for name, L in loops.items():
+            look = looks(loops)[name].line
             paths = control.root_locus_map(L, gains=np.geomspace(1e-3, 4, 3000)).loci
             loci.plot(paths.real, paths.imag, **look)
             now = control.feedback(L).poles()

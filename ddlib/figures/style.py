@@ -137,6 +137,8 @@ def looks(names: Iterable[str], roles: Mapping[str, str] | None = None) -> dict[
     if isinstance(names, str) or not isinstance(names, Iterable):
         raise TypeError(f"names must be texts, got {names!r:.60}")
     names = list(names)
+    if not names:
+        raise ValueError("names must hold one name or more, got none")
     for name in names:
         text("names", name)
     for name, role in (roles or {}).items():

@@ -141,7 +141,7 @@ HUES = """() => {
   return {
     drawn: [...new Set(parts.filter((el) => !el.closest("defs")).flatMap(of))],
     inks,
-    named: all(".legend span:has(path):not(.ddlib-throw *)") // there the arm's own velocity is ink
+    named: all(".legend span:has(path)")
       .map((el) => [el.textContent, of(el.querySelector("path:last-child"))]),
   };
 }"""
@@ -156,6 +156,7 @@ def test_colours_are_of_roles_and_a_name_has_its_own(tmp_path, visit, every, sch
     found = page.evaluate(HUES)
     tones = {role: seen(pair[scheme == "dark"]) for role, pair in ROLES.items()}
     known = {*tones.values(), *found["inks"], *map(seen, (*COLOURS, FAINT, GREY, "white", "black"))}
+    known |= {seen(("#f8ebbd", "#4d4526")[scheme == "dark"])}  # the window as an area
     on_grey = seen(ROLES["window"][1])
     assert set(found["drawn"]) <= {*known, on_grey}
     assert set(tones.values()) <= set(found["drawn"])

@@ -50,7 +50,7 @@ def side_by_side(
 ) -> Illustration:
     """Panels in one row, each with axes of its own."""
     shown = [name for panel in panels.values() if len(panel) > 1 for name in panel]
-    look = looks(shown)
+    look = looks(shown) if shown else {}
 
     def draw(figure: Figure):
         axes = figure.subplots(1, len(panels), squeeze=False, sharex=log, sharey=log)[0]

@@ -91,7 +91,8 @@ class Panel:
         if len(cursor) > 2:
             raise ValueError(f"cursor {what} must be one or two names, got {cursor}")
         ticks = [(number(f"ticks {what}", place), str(text)) for place, text in self.ticks or ()]
-        looks(legend.values(), self.roles)  # refuses what is no role
+        if legend or fixed:
+            looks([*legend.values(), *fixed], self.roles)  # refuses what is no role
         checked = {"curves": legend, "x": x, "fixed": fixed, "cursor": cursor, "ticks": ticks}
         checked["y_range"] = self._checked_range(what)
         checked["limits"] = self._checked_limits(what)

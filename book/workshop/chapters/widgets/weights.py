@@ -10,7 +10,7 @@ from matplotlib.gridspec import GridSpec
 from matplotlib.patches import Rectangle
 
 from ddlib.analysis import roughness
-from ddlib.figures import COLOURS, illustrate
+from ddlib.figures import TONES, illustrate
 from ddlib.figures.weights import dots, hinton_on, relative_weights
 from ddlib.learning import Weights
 from ddlib.widgets.base import Panel, Scalar
@@ -149,8 +149,8 @@ class WeightReader(_HintonWidget):
             squares.set(xlim=ends, ylim=(-0.7, 0.7), aspect="equal")
             squares.set_title(f"{unit_names(weights)[self.unit]}, {self.joint}'s window")
             squares.axis("off")
-            curve.vlines(time, 0, row, color=COLOURS[0])
-            curve.plot(time, row, "o", ms=4, color=COLOURS[0])
+            curve.vlines(time, 0, row, color=TONES["network"])
+            curve.plot(time, row, "o", ms=4, color=TONES["network"])
             curve.set(xlim=(time[0] - step / 2, time[-1] + step / 2), xlabel=CENTRE)
             curve.set_ylabel("weight")
 
