@@ -42,8 +42,8 @@ _BESIDE = {
     "filters and equations": "equations with learnt filters",
     "Butterworth filter": "equations after a Butterworth filter",
     "Kalman smoother": "equations after a Kalman smoother",
-    "equations and networks": "equations and networks",
-    "networks on states": "networks on states",
+    "equations and networks": "equations and ensemble",
+    "networks on states": "ensemble on states",
     "recurrent": "recurrent network",
     "network of 1988": "network of 1988",
 }
