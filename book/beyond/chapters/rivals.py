@@ -62,6 +62,8 @@ _LABELS = {
     "Kalman smoother": "Kalman, equations",
     "structure and process": "equations and process",
     "on states": "network on states",
+    "networks on states": "ensemble on states",
+    "equations and networks": "equations and ensemble",
     "recurrent": "recurrent network",
 }
 
@@ -167,7 +169,7 @@ def elsewhere_table() -> Table:
         told = {k: [np.median([d[part][k] for d in days]) for part in ("trajectory 6", "circles")]
                 for k in ("rmss", "covered")}  # fmt: skip
         errors = [f"{x:.3f}" for x in told["rmss"]]
-        rows.append((name, *errors, *(f"{100 * x:.0f} %" for x in told["covered"])))
+        rows.append((_BESIDE[name], *errors, *(f"{100 * x:.0f} %" for x in told["covered"])))
     heads = "trajectory 6", "circles", "inside its 95 %, trajectory 6", "on circles"
     return Table(("rival", *heads), rows)
 
