@@ -76,7 +76,7 @@ def test_folded_by_pointer_then_tilted_by_keys(page_with, widget):
     page.mouse.up()
     lift, tilt = (page.get_by_role("slider", name=name) for name in ("Lift", "Tilt"))
     lift.focus()
-    for _ in range(20):
+    for _ in range(10):
         page.keyboard.press("ArrowDown")
     tilt.focus()
     page.keyboard.press("End")

@@ -84,19 +84,19 @@ def said_and_seen() -> Table:
 
 
 def carried() -> np.ndarray:
-    """The landing page's row, per radian of its joint."""
+    """The row that goes on to the next lessons, per radian of its joint."""
     model = results.median_network(21, JOINT_DAMPING.name)
     unit, joint = both(model.weights)
     return model.inputs.gain[joint] * model.weights.hidden_weights[unit, joint]
 
 
 def puzzles() -> dict[str, np.ndarray]:
-    """The landing page's row; then those of Figures 5-6, 5-4 and 5-5 without their names.
+    """Our row; then those of Figures 5-6, 5-4 and 5-5 without their names.
 
     Each is per radian of its joint.
     """
     gain, filters = results.networks(21).inputs.gain, reported()
-    rows = {"landing page": carried()}
+    rows = {"our row": carried()}
     for label, figure in {"A": "Figure 5-6", "B": "Figure 5-4", "C": "Figure 5-5"}.items():
         rows[label] = gain[_REPORT[figure][1]] * filters[figure]
     return rows

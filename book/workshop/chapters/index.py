@@ -185,7 +185,7 @@ def _folded(axis):
 def _whose(axis):
     axis.axhline(0, color=figures.FAINT, lw=0.7)
     look = {"color": _TONE.network, "ms": 2.5, "lw": 1.2}
-    for name, row, x in (("A", carried_row(), 0), ("B", unrelated_row(), WIDTH + 3)):
+    for name, row, x in (("ours?", carried_row(), 0), ("ours?", unrelated_row(), WIDTH + 3)):
         axis.plot(x + np.arange(WIDTH), row / np.abs(row).max(), "o-", **look)
         axis.text(x + 1, -0.9, name, fontsize=10, fontweight="bold")
     axis.set(ylim=(-1.1, 1.1))
@@ -223,7 +223,7 @@ _PICTURES = {
     ),
     "hinton-diagrams": (_squares, "Ten rows of black and white squares; one row is framed."),
     "convolution-filters": (_folded, "The framed row as stems, with its line and its parabola."),
-    "whose-filters": (_whose, "Two smooth rows, A and B, that look much alike."),
+    "whose-filters": (_whose, "Two smooth rows that look much alike, each with the question whether it is ours."),
     "inertia-in-the-weights": (_area, "A parabola's area, and bars for row, its network and arm."),
 }
 _BANDED = _feedback, _feedforward, _recording

@@ -310,7 +310,7 @@ function build({ model, el }) {
       const { odd, even } = played;
       return `Dashed: the joint’s speed and its acceleration, each times a number. They explain ${share(odd.told)} of what went into the odd jar, and ${share(even.told)} of the even jar.`;
     }
-    if (get("lift") === reach.lift && !get("tilt") && !get("bend")) return "What agrees with its mirror image is the even half, what opposes it the odd half. Now move the wire.";
+    if (get("lift") === reach.lift / 2 && !get("tilt") && !get("bend")) return "What agrees with its mirror image is the even half, what opposes it the odd half. Now move the wire.";
     const moved = Object.keys(WIRE).filter((name) => Math.abs(get(name)) > 0.02 * reach[name]);
     const words = { lift: "Lifted: the joint stands still.", tilt: "Tilted: a steady speed.", bend: "Bent: the joint speeds up." };
     const what = moved.length === 1 ? words[moved[0]] : moved.length ? "Several at once." : "The joint stands at zero.";
@@ -388,7 +388,7 @@ function build({ model, el }) {
     if (held === "fold") {
       const across = (left - xOf(half)) / (xOf(n - 1) - xOf(half) + PAPER);
       const folded = Math.acos(Math.max(-1, Math.min(1, across))) / Math.PI; // the grip under the pointer
-      return set({ fold: folded > 0.9 ? 1 : Math.round(200 * folded) / 200 });
+      return set({ fold: folded > 0.75 ? 1 : Math.round(200 * folded) / 200 });
     }
     const angle = ((at.wire.middle - top) * 2 * TALLEST) / at.wire.height;
     const t = x[n - 1];
@@ -397,7 +397,8 @@ function build({ model, el }) {
       tilt: (angle - get("lift") - (get("bend") * t * t) / 2) / t,
       bend: (2 * (angle - get("lift") + get("tilt") * t)) / (t * t),
     };
-    bendTo(held, Math.round((100 * to[held]) / reach[held]) * (reach[held] / 100));
+    const share = Math.round((100 * to[held]) / reach[held]) / 100;
+    bendTo(held, Math.abs(share) < 0.08 ? 0 : share * reach[held]); // what is nearly straight is straight
   };
   const near = (event) => usable().some(([, { dot }]) => besideOf(dot)(event));
   draggable(svg, near, move, (event) => {
@@ -412,7 +413,8 @@ function build({ model, el }) {
       const steps = (KEYS[pressed] ?? 0) * (shiftKey ? 5 : 1);
       const ends = { Home: -1, End: 1 }[pressed];
       if (!steps && !ends) return false;
-      if (name === "fold") return set({ fold: ends ? (ends + 1) / 2 : Math.min(1, Math.max(0, get("fold") + 0.1 * steps)) });
+      const over = pressed === "ArrowLeft" || pressed === "ArrowRight" ? -steps : steps; // the edge goes where the key points
+      if (name === "fold") return set({ fold: ends ? (ends + 1) / 2 : Math.min(1, Math.max(0, get("fold") + 0.1 * over)) });
       bendTo(name, ends ? ends * reach[name] : get(name) + (steps * reach[name]) / 20);
     });
   }

@@ -203,7 +203,7 @@ function build({ model, el }) {
     const turn = Math.max(-2.4, Math.min(2.4, (1.6 * torque) / most));
     const tip = 8 * Math.min(1.1, at.s) * (head.classList.contains("truth") ? 1.25 : 1);
     const on = (angle, r = radius) => [x + r * Math.cos(angle), y - r * Math.sin(angle)];
-    const small = Math.abs(turn) * radius < 2;
+    const small = Math.abs(turn) * radius < tip; // an arrow that would be all head
     const end = from + turn - (Math.sign(turn) * Math.min(Math.abs(turn), 0.8 * tip / radius));
     put(curve, { d: small ? "M0 0" : `M${point(...on(from))}A${short(radius)} ${short(radius)} 0 0 ${turn > 0 ? 0 : 1} ${point(...on(end))}` });
     const reach = from + turn + (Math.sign(turn) * 0.6 * tip) / radius;
