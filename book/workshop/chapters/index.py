@@ -223,7 +223,10 @@ _PICTURES = {
     ),
     "hinton-diagrams": (_squares, "Ten rows of black and white squares; one row is framed."),
     "convolution-filters": (_folded, "The framed row as stems, with its line and its parabola."),
-    "whose-filters": (_whose, "Two smooth rows that look much alike, each with the question whether it is ours."),
+    "whose-filters": (
+        _whose,
+        "Two smooth rows that look much alike, each with the question whether it is ours.",
+    ),
     "inertia-in-the-weights": (_area, "A parabola's area, and bars for row, its network and arm."),
 }
 _BANDED = _feedback, _feedforward, _recording
