@@ -4,7 +4,7 @@ const REFERENCE = 1000; // points: more than any hit gets
 var Scorer = {
   score([page, title, , , score]) {
     const chapter = Number(title.replace(/<[^>]*>/g, "").match(/^\s*(\d+)\./)?.[1] ?? 99);
-    return score - chapter / 1000 - (page.startsWith("book/api/") ? REFERENCE : 0);
+    return score - chapter / 1000 - (page.startsWith("book/api") ? REFERENCE : 0);
   },
   objNameMatch: 11,
   objPartialMatch: 6,

@@ -32,7 +32,7 @@ WORLD = """([spec, moves]) => {
 
 @pytest.fixture(scope="module")
 def widget():
-    return index.hero()
+    return index.Hero(index.twins(), index.arms_inertia())
 
 
 @pytest.fixture(scope="module")

@@ -28,9 +28,9 @@ _SHOWN = 150  # samples of the motion
 _TONE = SimpleNamespace(**figures.TONES)
 
 
-def hero() -> Hero:
-    """What the page begins with."""
-    return Hero(twins(), results.read("twins")["arm"])
+def arms_inertia():
+    """What the study of twins weighs them against."""
+    return results.read("twins")["arm"]
 
 
 def both(weights: Weights) -> tuple[int, int]:
