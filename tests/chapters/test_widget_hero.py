@@ -12,9 +12,8 @@ from ddlib.learning import cases
 from ddlib.setups import JOINT_DAMPING
 from ddlib.simulation import LOG_STEP
 from ddlib.trajectories import APPENDIX_I
-from workshop.chapters import index
-from workshop.chapters.widgets.hero import twins
-from workshop.report import committed
+from workshop.chapters.widgets.hero import Hero, twins
+from workshop.report import committed, results
 
 WORLD = """([spec, moves]) => {
   const world = worldOf(spec);
@@ -32,7 +31,7 @@ WORLD = """([spec, moves]) => {
 
 @pytest.fixture(scope="module")
 def widget():
-    return index.Hero(index.twins(), index.arms_inertia())
+    return Hero(twins(), results.read("twins")["arm"])
 
 
 @pytest.fixture(scope="module")

@@ -17,7 +17,6 @@ from ddlib.setups import JOINT_DAMPING, predict
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote
 from workshop.chapters import planted
-from workshop.chapters.widgets.hero import Hero, twins
 from workshop.report import committed, results
 from workshop.report.evidence import cards
 from workshop.report.evidence.statements import resampled, stated
@@ -26,11 +25,6 @@ from workshop.report.measures import filter_trial as trial
 WIDTH = 21
 _SHOWN = 150  # samples of the motion
 _TONE = SimpleNamespace(**figures.TONES)
-
-
-def arms_inertia():
-    """What the study of twins weighs them against."""
-    return results.read("twins")["arm"]
 
 
 def both(weights: Weights) -> tuple[int, int]:
