@@ -156,7 +156,7 @@ def with_below(root: Path, pages: list[str]) -> list[str]:
 
 def walk(root: Path) -> list[Lesson]:
     """Lessons of the walk, without the evidence that stands below them."""
-    walked = (part for part in parts(root) if part.caption.startswith("The walk"))
+    walked = (part for part in parts(root) if (part.caption or "").startswith("The walk"))
     return [lesson(root, page) for part in walked for page in part.files()]
 
 

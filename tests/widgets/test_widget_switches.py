@@ -58,7 +58,8 @@ def test_curves_are_the_recorded_ones(switches, levels, effects):
 def test_the_stronger_the_further_from_the_ideal_arm(switches):
     exact = switches.curves_at(**OFF)
     for panel, name in zip(switches.spec["panels"], ("error", "torque", "close-up")):
-        np.testing.assert_allclose(exact[name], dict(panel["fixed"])["ideal"], rtol=1e-5, atol=1e-5)
+        ideal = next(values for label, values, _ in panel["fixed"] if label == "ideal")
+        np.testing.assert_allclose(exact[name], ideal, rtol=1e-5, atol=1e-5)
     for name in NAMES:
         levels = switches._parameters[name].points()
         off, weak, strong = (switches.curves_at(**OFF | {name: level}) for level in levels)
