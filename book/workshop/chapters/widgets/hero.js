@@ -33,15 +33,15 @@ function placesIn(wide) {
   const s = Math.min(1.3, wide / 358);
   const x = (v) => s * v;
   return {
-    narrow: true, s, wide: Math.min(wide, x(358)), high: x(522),
+    narrow: true, s, wide: Math.min(wide, x(358)), high: x(530),
     base: [x(46), x(168)], metre: x(172), thick: x(15), arcs: [[38, 50, 60], [28, 38, 48]].map((r) => r.map(x)),
     torque: [x(232), x(124)], says: [x(232), x(150)],
     elbow: { from: x(240), to: x(346), y: x(52), name: [x(234), x(38)] },
     rows: { from: x(50), to: x(198), A: x(252), B: x(450), tall: x(34), badge: x(16), dot: x(3.1) },
     chord: { from: x(60), to: x(188), y: x(345), name: [x(60), x(334)] },
-    note: [0, x(495)],
+    note: [0, x(505)],
     scales: { x: x(284), half: x(46), A: x(200), B: x(366), post: x(92), rope: x(50), verdict: x(116) },
-    button: null, under: [0, x(514)], bait: [x(232), x(150)],
+    button: null, under: [0, x(523)], bait: [x(232), x(150)],
   };
 }
 
