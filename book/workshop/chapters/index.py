@@ -262,28 +262,17 @@ def _quoted() -> None:
     quote("index-inertia-arm", own)
     off = np.abs(resampled(inertia) / own - 1)
     stated("index-inertia-near", off < 0.25)
-    others = [np.array(trial.row(width)["real"]["gains"])[:, 0, 0, 2] for width in (11, 41)]
-    nearest = np.min([np.abs(resampled(each) / own - 1) for each in others], 0)
-    stated("index-inertia-other-windows", nearest > off)
-    spring, other = "position alone", "another arm along this motion"
+    spring = "position alone"
     short, long = (planted.acceleration(spring, long) for long in (False, True))
     quote("index-spring", short)
     quote("index-spring-long", long)
     stated("index-shapes-of-the-motion", short > 90 and long < 10)
-    still = min(planted.acceleration(other), planted.acceleration(other, long=True))
-    stated("index-shapes-of-another-arm", still > 80)
     quote("index-knob", planted.every("the arm", "knob").mean())
     stated("index-spring-adds-nothing", abs(planted.every(spring, "knob")).max() < 0.05)
     nulls = [planted.every(kind, "M11").max() for kind in ("shifted", "random phases")]
     stated("index-draws-come-near", max(nulls) > 0.75 * own)
-    friction = [
-        planted.loaded(JOINT_DAMPING.name, model, "more viscous friction")
-        for model in ("unedited", "written", "one factor")
-    ]
-    stated("index-friction-needs-lines", friction[1] < 0.5 * friction[0] <= 0.51 * friction[2])
-    load = {m: planted.loaded(JOINT_DAMPING.name, m) for m in ("unedited", "written", "one factor")}
+    load = {m: planted.loaded(JOINT_DAMPING.name, m) for m in ("unedited", "written")}
     stated("index-load-written", load["written"] < 0.3 * load["unedited"])
-    stated("index-load-by-a-factor", load["one factor"] < 1.1 * load["written"])
     rivals = results.read("tuned")["rivals"]
     network, known = (
         np.array(rivals[name]["errors"]["trajectory 6"])
