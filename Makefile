@@ -102,6 +102,12 @@ lint: $(TESTED)
 	@echo "==> Style"
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	@echo "==> Workflows, Dependabot, citation"
+	$(BIN)/zizmor --offline --quiet .github
+	$(BIN)/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
+	$(BIN)/check-jsonschema --builtin-schema vendor.github-issue-forms .github/ISSUE_TEMPLATE/*.yml
+	$(BIN)/check-jsonschema --builtin-schema vendor.dependabot .github/dependabot.yml
+	$(BIN)/check-jsonschema --builtin-schema vendor.citation-file-format CITATION.cff
 
 stripped: $(TESTED)
 	@echo "==> Notebooks are stored without outputs"
@@ -163,10 +169,10 @@ live: $(READY)  ## pages that run in the browser, in _build/live; MIRROR=: whenc
 	@$(BIN)/python book/_ext/build.py
 	@PYTHONPATH="$$PWD/book/_ext" $(BIN)/python -m live --mirror "$(MIRROR)"
 
-pdf: book  ## the walk and the evidence as PDFs, in _build/pdf (needs Chromium)
+pdf: book $(TESTED)  ## the walk and the evidence as PDFs, in _build/pdf (needs Chromium)
 	@$(BIN)/python book/_ext/pdf.py
 
-epub: book  ## the walk as an EPUB, in _build/epub (needs Chromium)
+epub: book $(TESTED)  ## the walk as an EPUB, in _build/epub (needs Chromium)
 	@$(BIN)/python book/_ext/epub.py
 
 release: $(READY)  ## wheel, sites, PDFs, EPUB and notebooks in dist/, if tag, citation and changelog agree

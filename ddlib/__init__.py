@@ -36,4 +36,6 @@ flows, and each may import those above it, none below it::
 
 import lazy_loader
 
+__version__ = "0.1.0.dev0"
+
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -82,3 +82,5 @@ from .trajectories import (
     pick_and_place as pick_and_place,
     random_extents as random_extents,
 )
+
+__version__: str

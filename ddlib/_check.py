@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import numbers
 from collections.abc import Mapping
 
@@ -149,7 +150,10 @@ def flag(name: str, value) -> bool:
 def one_of(name: str, value, known) -> str:
     """`value` if it is among `known`, otherwise a ValueError that lists them."""
     if not any(value is item or (np.ndim(item) == 0 and _same(value, item)) for item in known):
-        raise ValueError(f"{name} must be one of {_listed(known)}, got {told(value)}")
+        texts = [item for item in known if isinstance(item, str)]
+        near = difflib.get_close_matches(value, texts, 1) if isinstance(value, str) else ()
+        meant = f"; did you mean {near[0]!r}?" if near else ""
+        raise ValueError(f"{name} must be one of {_listed(known)}, got {told(value)}{meant}")
     return value
 
 

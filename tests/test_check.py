@@ -33,6 +33,7 @@ def test_messages_name_argument_range_and_value():
         (lambda: positive("x", [1.0]), "x must have shape (..., 2), got (1,)"),
         (lambda: integer("n", 6, 1, 5), "n must be an integer from 1 to 5, got 6"),
         (lambda: one_of("mode", "A", "ab"), "mode must be one of 'a', 'b', got 'A'"),
+        (lambda: one_of("a", "lat", ["late", "on"]), "got 'lat'; did you mean 'late'?"),
     ):
         with pytest.raises(ValueError, match=re.escape(words)):
             call()

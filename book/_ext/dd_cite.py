@@ -42,9 +42,10 @@ def people(authors: list[dict]) -> str:
 def bibtex(root: Path) -> str:
     """The book, then what it refers to."""
     cited = yaml.safe_load((root / FILE).read_text(encoding="utf-8"))
-    year = str(cited["date-released"])[:4]
-    fields = {"author": people(cited["authors"]), "title": f"{{{cited['title']}}}", "year": year}
-    entries = [entry("misc", f"ddlib{year}", {**fields, "note": f"Version {cited['version']}"})]
+    fields = {"author": people(cited["authors"]), "title": f"{{{cited['title']}}}"}
+    if day := cited.get("date-released"):
+        fields |= {"year": str(day)[:4], "note": f"Version {cited['version']}"}
+    entries = [entry("misc", "ddlib", fields)]
     for reference in cited["references"]:
         key = reference["authors"][0]["family-names"] + str(reference["year"])
         fields = {"author": people(reference["authors"]), "title": f"{{{reference['title']}}}"}
@@ -77,7 +78,7 @@ def edition(root: Path) -> str:
     except OSError:  # no git here
         return ""
     cited = yaml.safe_load((root / FILE).read_text(encoding="utf-8"))
-    released = f"v{cited['version']}" in tags
+    released = f"v{cited.get('version')}" in tags
     return f"{cited['version']} of {cited['date-released']}" if released else ""
 
 

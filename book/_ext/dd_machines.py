@@ -45,6 +45,7 @@ def claims(root: Path) -> dict:
 
     Addresses are relative to the root of the site.
     """
+    import ddlib
     from workshop.report.code_hash import code_hash, places
     from workshop.report.evidence.claims import load
 
@@ -75,7 +76,7 @@ def claims(root: Path) -> dict:
         )
     return {
         "title": cited["title"],
-        "version": str(cited["version"]),
+        "version": ddlib.__version__,
         "license": cited["license"],
         "digest of the results": kept["of results"],
         "code that made each result": {name: code_hash(name) for name in sorted(places())},

@@ -5,7 +5,8 @@ and want a server, as `python -m http.server`; neither needs a network.
 
 `python book/_ext/release.py` says what does not agree, and writes nothing then: the version of the
 package, of the citation and of the newest entry of the changelog, its date and the citation's, the
-tag at this commit, and a tree without changes. `make release` makes what is collected first.
+authors, the tag at this commit, and a tree without changes. `make release` makes what is collected
+first.
 """
 
 from __future__ import annotations
@@ -17,17 +18,19 @@ import re
 import shutil
 import subprocess
 import sys
-import tomllib
 from pathlib import Path
 
 import yaml
 
 ROOT = Path(__file__).parents[2]
 CRATE, SPDX = "ro-crate-metadata.json", "https://spdx.org/licenses/"
+VERSION = re.compile(r'^__version__ = "(.+)"$', re.M)
 ENTRY = re.compile(r"^## (\S+) \((\d{4}-\d\d-\d\d)\)$", re.M)
 MADE = {"notebooks.zip": "html/notebooks.zip", "walk.pdf": "pdf/walk.pdf",
         "evidence.pdf": "pdf/evidence.pdf", "book.epub": "epub/book.epub"}  # fmt: skip
 """Names in the release, and where they are made below `_build`."""
+BESIDE = (".zenodo.json", "paper/paper.md", "paper/metadata.yaml")
+"""What names the authors beside the citation."""
 
 
 def git(root: Path, *words: str) -> str:
@@ -40,24 +43,37 @@ def git(root: Path, *words: str) -> str:
 
 def disagreements(root: Path) -> list[str]:
     """What speaks against a release of a folder, a sentence each."""
-    package = tomllib.loads((root / "pyproject.toml").read_text("utf-8"))["project"]["version"]
+    package = VERSION.search((root / "ddlib" / "__init__.py").read_text("utf-8"))[1]
     cited = yaml.safe_load((root / "CITATION.cff").read_text("utf-8"))
     newest = ENTRY.search((root / "CHANGELOG.md").read_text("utf-8"))
     wrong = []
     if newest is None:
         wrong.append('CHANGELOG.md has no entry like "## 1.2.3 (2026-01-31)"')
     elif newest[1] != package:
-        wrong.append(f"pyproject.toml has version {package}, CHANGELOG.md begins with {newest[1]}")
-    if str(cited["version"]) != package:
-        wrong.append(f"pyproject.toml has version {package}, CITATION.cff {cited['version']}")
+        wrong.append(f"ddlib has version {package}, CHANGELOG.md begins with {newest[1]}")
+    if str(cited.get("version")) != package:
+        wrong.append(f"ddlib has version {package}, CITATION.cff {cited.get('version')}")
     if newest is not None and str(cited.get("date-released")) != newest[2]:
         released = cited.get("date-released")
         wrong.append(f"CHANGELOG.md is of {newest[2]}, CITATION.cff of {released}")
+    families = [author.get("family-names") for author in cited["authors"]]
+    if not all(families):
+        wrong.append("an author in CITATION.cff is no person: family-names, given-names")
+    for name in BESIDE:
+        text = (root / name).read_text("utf-8")
+        if unnamed := [family for family in families if family and family not in text]:
+            wrong.append(f"{name} does not name {', '.join(unnamed)}")
     if f"v{package}" not in git(root, "tag", "--points-at", "HEAD").split():
         wrong.append(f"this commit has no tag v{package}: git tag -a v{package}")
     if git(root, "status", "--porcelain"):
         wrong.append("there are changes that are not committed")
     return wrong
+
+
+def notes(changelog: str) -> str:
+    """What its newest entry says."""
+    parts = re.split(r"^(?=## )", changelog, flags=re.M)
+    return next(part for part in parts if ENTRY.match(part)).partition("\n")[2].strip() + "\n"
 
 
 def crate(cited: dict, made: list[Path]) -> dict:
@@ -133,6 +149,7 @@ def collect(root: Path, folder: Path) -> list[Path]:
     for name, path in MADE.items():
         stem, dot, ending = name.rpartition(".")
         shutil.copyfile(built / path, new / f"{stem}-{version}{dot}{ending}")
+    (new / "NOTES.md").write_text(notes((root / "CHANGELOG.md").read_text("utf-8")), "utf-8")
     cited = yaml.safe_load((root / "CITATION.cff").read_text("utf-8"))
     text = json.dumps(crate(cited, sorted(new.iterdir())), indent=1, ensure_ascii=False)
     (new / CRATE).write_text(text + "\n", encoding="utf-8")

@@ -15,5 +15,6 @@ def __getattr__(name):
         if error.name != "torch":
             raise
         raise ImportError(
-            f'ddlib.learning.{name} needs PyTorch: pip install "ddlib[learning]"', name="torch"
+            f'ddlib.learning.{name} needs PyTorch: pip install "direct-drive-arm[learning]"',
+            name="torch",
         ) from None

@@ -89,6 +89,10 @@ class CurveWidget(PageWidget):
     _esm = bundle("curves.js")
     _css = styles()
 
+    def __repr__(self):
+        values = (f"{name}={getattr(self, name)!r}" for name in self._parameters)
+        return f"{type(self).__name__}({', '.join(values)})"
+
     baked = t.Bytes(help="the curves at every setting", read_only=True).tag(sync=True)
     request = t.Int(0, help="counts the page's requests for exact curves").tag(sync=True)
     exact = t.Bytes(b"", help="the function's curves as float32", read_only=True).tag(sync=True)

@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import sys
 import zipfile
+from datetime import date
 
 import dd_cite
 import dd_public
@@ -13,6 +14,7 @@ import missing
 import nbformat
 import pytest
 import release
+import yaml
 from book_pages import ROOT
 from packaging.requirements import Requirement
 
@@ -103,15 +105,20 @@ def test_all_notebooks_come_in_one_archive(built):
     assert "the-book" in notebook.cells[2].source
 
 
+CITED = "version: {}\ndate-released: {}\nauthors:\n- {}\n"
+
+
 @pytest.fixture
 def tagged(tmp_path):
     """A folder that could be released: what `release.disagreements` reads, committed and tagged."""
     texts = {
-        "pyproject.toml": '[project]\nname = "x"\nversion = "1.2.0"\n',
-        "CITATION.cff": "version: 1.2.0\ndate-released: 2026-01-31\n",
-        "CHANGELOG.md": "# Changes\n\n## 1.2.0 (2026-01-31)\n\n## 1.1.0 (2025-01-31)\n",
+        "ddlib/__init__.py": '__version__ = "1.2.0"\n',
+        "CITATION.cff": CITED.format("1.2.0", "2026-01-31", "family-names: Noether"),
+        **dict.fromkeys(release.BESIDE, "Emmy Noether"),
+        "CHANGELOG.md": "# Changes\n\n## 1.2.0 (2026-01-31)\n\n- New.\n\n## 1.1.0 (2025-01-31)\n",
     }
     for name, text in texts.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text)
     me = ["git", "-C", tmp_path, "-c", "user.name=x", "-c", "user.email=x@example.org"]
     for words in (["init", "-q"], ["add", "."], ["commit", "-qm", "x"], ["tag", "v1.2.0"]):
@@ -121,8 +128,13 @@ def tagged(tmp_path):
 
 def test_a_release_needs_tag_citation_and_changelog_to_agree(tagged):
     assert not release.disagreements(tagged)
-    (tagged / "CITATION.cff").write_text("version: 1.1.0\ndate-released: 2026-01-30\n")
+    assert release.notes((tagged / "CHANGELOG.md").read_text()) == "- New.\n"
+    (tagged / "CITATION.cff").write_text(CITED.format("1.1.0", "2026-01-30", "family-names: Curie"))
     told = " ".join(release.disagreements(tagged))
+    assert "paper/paper.md does not name Curie" in told
+    (tagged / "CITATION.cff").write_text(CITED.format("1.1.0", "2026-01-30", "name: Some group"))
+    told = " ".join(release.disagreements(tagged))
+    assert "no person" in told
     assert "CITATION.cff 1.1.0" in told and "2026-01-30" in told and "not committed" in told
     (tagged / "CHANGELOG.md").write_text("# Changes\n\n## 1.3.0 (2026-02-01)\n")
     assert "begins with 1.3.0" in " ".join(release.disagreements(tagged))
@@ -145,9 +157,12 @@ def test_pages_of_a_release_name_it_and_link_the_newest(tagged, monkeypatch):
     assert edition(tagged) == ""
 
 
-def test_this_citation_and_changelog_agree():
-    told = release.disagreements(ROOT)
-    assert not [one for one in told if "tag" not in one and "committed" not in one]
+def test_the_citation_names_the_newest_release_or_none():
+    cited = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    newest = release.ENTRY.search((ROOT / "CHANGELOG.md").read_text(encoding="utf-8"))
+    assert [cited.get("version"), cited.get("date-released")] == (
+        [newest[1], date.fromisoformat(newest[2])] if newest else [None, None]
+    )
     json.loads((ROOT / ".zenodo.json").read_text(encoding="utf-8"))
 
 

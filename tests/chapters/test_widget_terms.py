@@ -123,3 +123,13 @@ def test_time_moves_the_arm_and_plays_twice_as_fast(page_with, terms):
     page.get_by_role("button", name="Play").click()
     page.wait_for_function("parseFloat(document.querySelector('.player output').textContent) > 0.3")
     page.get_by_role("button", name="Pause").click()
+
+
+@pytest.mark.browser
+def test_who_wants_no_motion_steps_by_play(page_with, terms):
+    page = page_with(terms, calm=True)
+    page.get_by_role("slider", name="Time").press("Home")
+    for moment in ("0.50", "1.00"):
+        page.get_by_role("button", name="Play").click()
+        page.wait_for_timeout(600)
+        assert page.locator(".player output").inner_text().startswith(moment)

@@ -77,6 +77,7 @@ def test_the_widget_shows_its_function():
     names = run(source)
     widget, speed = names["FrictionCurve"](), names["SPEED"]
     widget.viscous, widget.coulomb = 0.25, 0.75
+    assert repr(widget) == "FrictionCurve(viscous=0.25, coulomb=0.75)"
     (torque,) = widget.curves.values()
     np.testing.assert_allclose(torque, 0.25 * speed + 0.75 * np.sign(speed))
     assert_exact_table(widget)

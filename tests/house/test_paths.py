@@ -22,7 +22,7 @@ def clone(request, tmp_path):
     commands.mkdir(parents=True)
     for name in ("Makefile", "pyproject.toml", "requirements.txt", "requirements-test.txt"):
         shutil.copy(ROOT / name, folder)
-    for name in ("python", "ruff"):
+    for name in ("python", "ruff", "zizmor", "check-jsonschema"):
         (commands / name).write_text(RECORD)
         (commands / name).chmod(0o755)
     for done in (".ready", ".tested"):

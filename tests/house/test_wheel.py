@@ -136,7 +136,7 @@ def test_what_needs_no_torch_works_without_it(site):
 
 def test_what_needs_torch_names_the_way_to_get_it(site):
     *names, of_setups = run(site, BLOCK, REFUSED).splitlines()
-    way = 'needs PyTorch: pip install "ddlib[learning]"'
+    way = 'needs PyTorch: pip install "direct-drive-arm[learning]"'
     kinds = ("train_ensemble", "solve", "WindowNetwork", "TorqueNetwork")
     assert names == [f"ddlib.learning.{name} {way}" for name in kinds]
-    assert of_setups.endswith('pip install "ddlib[learning]"')
+    assert of_setups.endswith('pip install "direct-drive-arm[learning]"')

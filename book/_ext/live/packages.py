@@ -21,6 +21,8 @@ import zipfile
 from importlib.metadata import distribution
 from pathlib import Path
 
+import ddlib
+
 PAGE = Path(__file__).with_name("page")  # what the page itself runs
 VERSION = "314.0.3"
 TARBALL = "sK40My6m8tmBUYtYH9au9rXUeh9x0wfahtHdOlGmJxZDsKBGKtP6KznyFB2+u/klbQTdDionR0uaVd176zVQzQ=="
@@ -200,7 +202,7 @@ def write_packages(root: Path, mirror: str, store: Path, out: Path) -> list[int]
     ours = sources(root / "ddlib", root)
     widgets = {path: ours.pop(path) for path in sorted(ours) if path.startswith(f"{WIDGETS}/")}
     widgets[STILL] = (PAGE / "instead" / "still.py").read_bytes()
-    version, first = distribution("ddlib").version, [name for name in FIRST if name != "ddlib"]
+    version, first = ddlib.__version__, [name for name in FIRST if name != "ddlib"]
     for name, files, depends, imports in (
         ("ddlib", ours, first, "ddlib"),
         ("ddlib-widgets", widgets, ["traitlets"], WIDGETS.replace("/", ".")),

@@ -2,14 +2,18 @@
 
 import { buttonOf, make, write } from "./elements.js";
 
-// `draw(now)` shows a moment (s), words() what stands after it; with reduced motion the clock jumps
-// from one half second to the next. `rate()` is how many of its seconds pass in one; again() goes on
+// `draw(now)` shows a moment (s), words() what stands after it; with reduced motion each press of *Play*
+// shows the moment half a second later, and nothing moves by itself. `rate()` is how many of its seconds pass in one; again() goes on
 // after it has changed; stopped() is called when time stands still.
 export function clockOf(view, { at, end, step, rate = () => 1, stopped = () => {} }, draw, words = () => "") {
   const id = `${view.id}-time`;
   const output = make("output", { for: id });
   const slider = make("input", { id, type: "range", min: 0, max: end, step });
-  const play = buttonOf("Play", () => (frame ? pause() : start(now < end ? now : 0)));
+  const play = buttonOf("Play", () => {
+    if (calm.matches) stand(now < end ? Math.min(end, now + rate() / 2) : 0);
+    else if (frame) pause();
+    else start(now < end ? now : 0);
+  });
   const el = make("div", { class: "slider" }, make("label", { for: id }, "Time"), output, slider);
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   let now = at;
@@ -29,7 +33,7 @@ export function clockOf(view, { at, end, step, rate = () => 1, stopped = () => {
   }
   function run(moment) {
     const passed = Math.max(0, moment - from) / 1000; // a frame may bear an earlier stamp
-    now = Math.min(end, rate() * (calm.matches ? Math.floor(passed * 2) / 2 : passed));
+    now = Math.min(end, rate() * passed);
     show();
     if (now < end) frame = requestAnimationFrame(run);
     else pause();
