@@ -137,7 +137,6 @@ def _arguments() -> dict[str, dict]:
         "FoldBench": {"rows": {"up": rows[0, 0]}, "step": 0.01, "motion": np.zeros((60, 3))},
         "Hero": {"pair": [_twin("A", single[7], 6.0), _twin("B", single[7], 0.0)], "arm": 6.0},
         "HiddenTorque": {"recording": last},
-        "SlidingWindow": {"models": single, "recording": last},
         "TrainingPlayer": {
             "epochs": [0, 10, 20], "model": network(7, 1, 2, 3), "recording": recording,
             "member": 1,

@@ -164,7 +164,7 @@ function unitSheet(spec) {
     const k = c < 2 ? c : c - 2;
     const wide = place.width / across;
     const top = c < 2 ? 0 : TALL + Math.floor(k / across) * LOW;
-    return { left: (k % across) * wide, top, wide: wide - 8, high: c < 2 ? TALL - FOOT : LOW - 6 };
+    return { left: (k % across) * wide, top, wide: wide - (c < 2 ? 20 : 10), high: c < 2 ? TALL - FOOT : LOW - 6 };
   };
   const fit = place.resize;
   place.resize = () => {
