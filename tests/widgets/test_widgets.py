@@ -21,7 +21,6 @@ from ddlib.widgets import (
     Parameter,
     Presets,
     Scalar,
-    TrainingPlayer,
 )
 from workshop.chapters.widgets.window import HiddenTorque
 
@@ -78,10 +77,7 @@ def test_widgets_keep_to_the_recordings_step():
     }
     hidden = HiddenTorque(log[5], 21)
     explorer = FilterExplorer(models, (0, 1))
-    moved = [Weights.random(2, 21, seed=k) for k in range(3)]
-    course = replace(models[21], weights=Weights.stack(moved))
-    player = TrainingPlayer([0, 1, 2], course, log)
-    for widget, panel in ((hidden, 1), (explorer, 0), (player, 0)):
+    for widget, panel in ((hidden, 1), (explorer, 0)):
         times = widget.spec["panels"][panel]["x"]
         np.testing.assert_allclose(np.diff(times), 1e3 * step, rtol=1e-6)
     (gain,) = (p for p in explorer.spec["panels"] if p["y_label"] == "Gain")
