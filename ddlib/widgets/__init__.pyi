@@ -22,9 +22,6 @@ from .parts.parameters import (
 from .picker import (
     TrajectoryPicker as TrajectoryPicker,
 )
-from .player import (
-    TrainingPlayer as TrainingPlayer,
-)
 from .scripts import (
     bundle as bundle,
     styles as styles,

@@ -74,7 +74,7 @@ class FilterExplorer(_HintonWidget):
         step: float | None = None,
         **options,
     ):
-        models = _check_models(models, 1, 1)
+        models = _check_models(models)
         self._step = step = common_step(models.values(), step)
         self._weights = {width: model.weights for width, model in models.items()}
         for weights in self._weights.values():

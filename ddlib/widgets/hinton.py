@@ -42,23 +42,18 @@ def zero_padded(f, reach: int) -> np.ndarray:
     return np.pad(f, [(0, 0)] * (f.ndim - 1) + [(zeros, zeros)])
 
 
-def _check_models(models, axes: int, least: int = 2) -> dict[int, TorqueModel]:
-    """`models` if it maps `least` window sizes or more to models, otherwise an error.
-
-    Their weights have no leading axis (``axes=0``, one network) or one (an ensemble).
-    """
-    if not isinstance(models, Mapping) or len(models) < least:
-        sizes = "two window sizes or more" if least == 2 else "window sizes"
-        raise TypeError(f"models must map {sizes} to models, got {told(models)}")
+def _check_models(models) -> dict[int, TorqueModel]:
+    """`models` if it maps window sizes to ensembles, otherwise an error."""
+    if not isinstance(models, Mapping) or not models:
+        raise TypeError(f"models must map window sizes to models, got {told(models)}")
     for width, model in models.items():
         if not isinstance(model, TorqueModel):
             raise TypeError(f"models must hold TorqueModels, got {told(model)} for {told(width)}")
-        if model.weights.width != width or model.weights.hidden_bias.ndim != axes + 1:
-            what = "one network" if axes == 0 else "an ensemble"
+        if model.weights.width != width or model.weights.hidden_bias.ndim != 2:
             shape = model.weights.hidden_weights.shape
             raise ValueError(
-                f"models must map each window size to {what} of that size, got weights of shape "
-                f"{shape} for {width!r}"
+                f"models must map each window size to an ensemble of that size, got weights of "
+                f"shape {shape} for {width!r}"
             )
     return dict(models)
 
@@ -77,11 +72,11 @@ def common_step(models, step: float | None = None) -> float:
     return float(step)
 
 
-def width_choice(sizes, first: int | None = None) -> Choice:
-    """The menu of window sizes; `first`, or else the middle one, is chosen at the start."""
+def width_choice(sizes) -> Choice:
+    """The menu of window sizes; the middle one is chosen at the start."""
     sizes = sorted(sizes)
     labels = {width: f"{width} samples" for width in sizes}
-    return Choice("width", "Window size", labels, first or sizes[len(sizes) // 2])
+    return Choice("width", "Window size", labels, sizes[len(sizes) // 2])
 
 
 def share_panel(title: str, x_label: str, parts: Mapping[float, str]) -> Panel:

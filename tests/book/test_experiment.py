@@ -17,6 +17,7 @@ def test_other_trajectories_are_recorded_learnt_and_weighed(site, visit):
     here = visit(f"{site}/book/window-networks.html", width=390)
     page = here.page
     trainer = page.locator(".ddlib-trainer")
+    trainer.get_by_text("Your own experiment").click()
     for joint, trajectory, extent in (("shoulder", 1, "30"), ("elbow", 4, "20")):
         write(trainer.get_by_label(f"{joint} in trajectory {trajectory}"), extent)
     assert "not recorded" in trainer.locator(".recorded").inner_text()

@@ -26,7 +26,9 @@ def handles(root) -> list[Handle]:
     """The first drawing (or part of one) that can be dragged and the first slider of a widget.
 
     Where there is neither, the first switch or number, or a button that chooses what is shown.
+    A fold is opened first.
     """
+    root.locator("details").evaluate_all("(all) => all.forEach((fold) => (fold.open = true))")
     for kinds in ((DRAWING, SLIDER), (SWITCH, NUMBER), (BUTTON,)):
         found = [root.locator(kind).locator("visible=true") for kind in kinds]
         if some := [Handle(root, kind.first) for kind in found if kind.count()]:

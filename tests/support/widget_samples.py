@@ -110,14 +110,12 @@ def sample_of(kind: type[PageWidget]) -> PageWidget:
 @cache
 def _arguments() -> dict[str, dict]:
     """What kinds are made of, by their names; others need nothing."""
-    recording = STATE_FEEDBACK.record()
-    learnt, last = split(recording)
+    learnt, last = split(STATE_FEEDBACK.record())
     scalings = TrainingSet.from_recording(learnt, 7)
     rng = np.random.default_rng(0)
 
-    def network(width, *seeds):
-        drawn = [Weights.random(3, width, hidden=4, seed=seed) for seed in seeds or (0,)]
-        weights = Weights.stack(drawn) if seeds else drawn[0]
+    def network(width, seed=0):
+        weights = Weights.random(3, width, hidden=4, seed=seed)
         return TorqueModel(weights, scalings.inputs, scalings.outputs)
 
     models = {width: network(width) for width in (7, 11)}
@@ -137,13 +135,8 @@ def _arguments() -> dict[str, dict]:
         "FoldBench": {"rows": {"up": rows[0, 0]}, "step": 0.01, "motion": np.zeros((60, 3))},
         "Hero": {"pair": [_twin("A", single[7], 6.0), _twin("B", single[7], 0.0)], "arm": 6.0},
         "HiddenTorque": {"recording": last},
-        "SlidingWindow": {"models": single, "recording": last},
-        "TrainingPlayer": {
-            "epochs": [0, 10, 20], "model": network(7, 1, 2, 3), "recording": recording,
-            "member": 1,
-        },
         "TurnTheParabola": {
-            "networks": {"an arm": models[7], "a spring": network(7, 5)[0]},
+            "networks": {"an arm": models[7], "a spring": network(7, 5)},
             "windows": windows, "inertial": rng.normal(size=(len(windows), 2)),
         },
         "UnitFromFiveStarts": {"networks": {0.1: pair, 0.5: pair[::-1]}},

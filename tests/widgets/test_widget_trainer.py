@@ -228,8 +228,10 @@ def test_a_readers_own_experiment(page_with, capsys):
     widget = NetworkTrainer(epochs=400)
     page = page_with(widget, calm=True)
     recorded = page.locator(".recorded")
+    page.get_by_text("Your own experiment").click()
     assert "Appendix I" in recorded.inner_text()
     write(page.get_by_label("shoulder in trajectory 1"), "30.5")
+    page.locator(".pad").scroll_into_view_if_needed()
     _, down = drag(page, page.locator(".pad .frame").bounding_box(), (20.9 / 45, 1), (0.5, 0.5))
     dragged = page.get_by_label("elbow in trajectory 4").input_value()
     assert float(dragged) == round(45 * (1 - down), 1)
@@ -307,7 +309,7 @@ def test_python_sets_extents_and_the_page_records_them(driven):
     own.epoch = 20
     own.extents_deg = other
     settle(lambda: own.error is not None)
-    assert "Recorded in your browser." in page.locator(".recorded").inner_text()
+    assert "Recorded in your browser." in page.locator(".recorded").text_content()
     assert page.get_by_label("shoulder in trajectory 1").input_value() == "12.5"
     assert page.evaluate(STATE)["epoch"] == 20
     recording = JOINT_DAMPING.record(other)
@@ -322,6 +324,7 @@ def test_python_hears_what_the_reader_does(driven):
     other = NetworkTrainer(epochs=60)
     with_other = link((own, "seed"), (other, "seed"))
     page.get_by_role("button", name="New weights").click()
+    page.get_by_text("Your own experiment").click()
     settle(lambda: own.weights is not None and own.epoch == 0)
     assert other.seed == own.seed
     page.get_by_role("button", name="Record and train").click()

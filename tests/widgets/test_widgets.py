@@ -21,9 +21,8 @@ from ddlib.widgets import (
     Parameter,
     Presets,
     Scalar,
-    TrainingPlayer,
 )
-from workshop.chapters.widgets.window import HiddenTorque, SlidingWindow
+from workshop.chapters.widgets.window import HiddenTorque
 
 
 def test_parameters_are_traits_and_the_page_is_answered():
@@ -76,15 +75,9 @@ def test_widgets_keep_to_the_recordings_step():
     models = {
         w: TorqueModel(Weights.random(2, w), x.inputs, x.outputs, x.step) for w, x in data.items()
     }
-    single = {w: model[0] for w, model in models.items()}
-    sliding = SlidingWindow(single, log[5], first=21)
-    assert sliding.curves["last"] == pytest.approx(1e3 * step * 10.5)
     hidden = HiddenTorque(log[5], 21)
     explorer = FilterExplorer(models, (0, 1))
-    moved = [Weights.random(2, 21, seed=k) for k in range(3)]
-    course = replace(models[21], weights=Weights.stack(moved))
-    player = TrainingPlayer([0, 1, 2], course, log)
-    for widget, panel in ((sliding, 0), (hidden, 1), (explorer, 0), (player, 0)):
+    for widget, panel in ((hidden, 1), (explorer, 0)):
         times = widget.spec["panels"][panel]["x"]
         np.testing.assert_allclose(np.diff(times), 1e3 * step, rtol=1e-6)
     (gain,) = (p for p in explorer.spec["panels"] if p["y_label"] == "Gain")
@@ -94,5 +87,3 @@ def test_widgets_keep_to_the_recordings_step():
         FilterExplorer(unknown, (0, 1))
     with pytest.raises(ValueError, match=r"sampling period of 0\.01 s"):
         FilterExplorer(models, (0, 1), step=0.01)
-    with pytest.raises(ValueError, match="sampling period"):
-        SlidingWindow(single, setup.record()[5])

@@ -57,35 +57,29 @@ def hidden_torque() -> HiddenTorque:
     return HiddenTorque(split(JOINT_DAMPING.record())[1])
 
 
-_LESSON = {"trained as in 1988": "", "made to match": "-damping"}
-READINGS = {
+_READINGS = {
     "damped joints": "-damping",
     "damped by the controller": "",
     "hardly damped": "-position",
 }
 
 
-def table_4_1(readings: Mapping[str, str] = _LESSON) -> Table:
+def table_4_1() -> Table:
     """Table 4-1 as printed, beside medians and 95 % intervals of the book's networks.
 
     Bold: within a factor of 1.5 of what is printed.
-
-    Parameters
-    ----------
-    readings : mapping
-        Head of a column -> how the names of its claims end.
     """
     rows = []
     for what, w in _CELLS:
         row = [f"{what}, {w}", significant(_PRINTED[what][w], 2)]
-        for ending in readings.values():
+        for ending in _READINGS.values():
             measured = claims.measured(f"table-4-1-{what}-{w}{ending}")
             ends = np.quantile(measured.replicates, (0.025, 0.975))
             middle, low, high = (significant(x, 2) for x in (measured.value, *ends))
             near = abs(np.log(measured.value / _PRINTED[what][w])) <= np.log(_NEAR)
             row.append(f"{f'**{middle}**' if near else middle} ({low} to {high})")
         rows.append(row)
-    return Table(("motions, window", "printed in 1988", *readings), rows)
+    return Table(("motions, window", "printed in 1988", *_READINGS), rows)
 
 
 def figure_4_1() -> Illustration:
@@ -237,8 +231,6 @@ def _quoted() -> None:
     quote("window-live-named", 100 * np.mean(shifted["named"]))
     bends, torque = _bends()
     quote("window-bend-sign", 100 * (np.sign(bends) == np.sign(torque)).mean())
-    quote("window-steps", JOINT_DAMPING.steps)
-    quote("window-long-draws", results.read("filter-trial")["draws"])
     for w in WINDOWS:
         weights = Weights.random(1, w)[0].count()
         quote(f"window-rule-{w}", 2 * w * JOINT_DAMPING.hidden)
@@ -246,10 +238,6 @@ def _quoted() -> None:
         quote(f"window-passes-{w}", 1500 * weights)
     quote("window-worst", _worst(JOINT_DAMPING.name))
     quote("window-worst-state", _worst("state feedback"))
-    quote("window-least-printed", min(WINDOWS, key=_PRINTED["test"].get))
-    for name, ending in zip(("state", "damping"), _LESSON.values()):
-        test = {w: claims.measured(f"table-4-1-test-{w}{ending}").value for w in WINDOWS}
-        quote(f"window-least-{name}", min(WINDOWS, key=test.get))
 
 
 def _exercise(number: int, *given) -> Exercise:

@@ -1,5 +1,5 @@
-// What TrainingPlayer (player.py) adds to a HintonWidget: a button that steps over the epochs, its
-// speed, and a loop. The film begins at the trait `begin`, if there is one.
+// A film of a widget with a parameter "epoch": a button that steps over the epochs, its speed, and a
+// loop.
 
 import { extras } from "./curves.js";
 import { make } from "./elements.js";
@@ -9,7 +9,6 @@ const SPEEDS = { slow: 400, normal: 130, fast: 45 }; // ms a picture
 extras.push((view) => {
   const { options } = view.spec.parameters.find((p) => p.name === "epoch");
   const placeOf = (epoch) => options.findIndex(([key]) => key === epoch);
-  const first = Math.max(0, placeOf(view.model.get("begin")));
   const button = make("button", { type: "button" }, "Play");
   const select = make("select", { id: `${view.id}-speed` });
   for (const name of Object.keys(SPEEDS)) select.append(make("option", { value: name }, name));
@@ -30,14 +29,14 @@ extras.push((view) => {
     const last = index === options.length - 1;
     if (last && !loop.checked) return pause();
     const [step, wait] = calm.matches ? [10, 1500] : [1, SPEEDS[select.value]]; // calm: a few pictures
-    const next = last ? first : Math.min(index + step, options.length - 1);
+    const next = last ? 0 : Math.min(index + step, options.length - 1);
     timer = setTimeout(() => go(next), last ? 1200 : wait); // the end stands for a while
   }
   button.addEventListener("click", () => {
     if (timer) return pause();
     button.textContent = "Pause";
     const now = placeOf(view.get("epoch"));
-    go(now === options.length - 1 ? first : now);
+    go(now === options.length - 1 ? 0 : now);
   });
   view.after.push(() => {
     if (timer && view.get("epoch") !== shown) pause();

@@ -22,7 +22,7 @@ export const scaledOf = ({ inputs: { low, gain, first } }, positions) =>
   positions.map((x, j) => x.map((q) => first + (q - low[j]) * gain[j]));
 
 // The window around a sample of scaled positions.
-export function windowAt({ net }, scaled, k, window = new Float64Array(net.inputs)) {
+function windowAt({ net }, scaled, k, window = new Float64Array(net.inputs)) {
   const first = k - (net.width >> 1);
   scaled.forEach((x, j) => window.set(x.subarray(first, first + net.width), j * net.width));
   return window;

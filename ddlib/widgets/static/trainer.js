@@ -150,21 +150,21 @@ function schoolOf(spec, choice, cases) {
   return school;
 }
 
-// All filters as curves over the window's time: the direct ones large, then those of the hidden units;
-// both joints' windows share a frame and a scale. What has a name is bold.
+// All filters as curves over the window's time: the direct ones large, then those of the hidden units
+// as a strip; both joints' windows share a frame and a scale. What has a name is bold.
 function unitSheet(spec) {
-  const units = Array.from({ length: spec.layout.hidden }, (_, k) => `unit ${k + 1}`);
+  const units = Array.from({ length: spec.layout.hidden }, (_, k) => String(k + 1));
   const cells = [...NAMES.map((name) => `${name} torque`), ...units];
   const place = sheet(0);
   const { el, pen } = place;
-  const [TALL, LOW, FOOT] = [160, 114, 16];
-  const columns = () => (el.clientWidth < 480 ? 2 : 5);
+  const [TALL, LOW, HEAD, FOOT] = [128, 66, 20, 20];
+  const columns = () => (el.clientWidth < 480 ? 5 : 10);
   const boxOf = (c) => {
     const across = c < 2 ? 2 : columns();
     const k = c < 2 ? c : c - 2;
     const wide = place.width / across;
     const top = c < 2 ? 0 : TALL + Math.floor(k / across) * LOW;
-    return { left: (k % across) * wide, top, wide: wide - 14, high: c < 2 ? TALL : LOW };
+    return { left: (k % across) * wide, top, wide: wide - (c < 2 ? 20 : 10), high: c < 2 ? TALL - FOOT : LOW - 6 };
   };
   const fit = place.resize;
   place.resize = () => {
@@ -191,14 +191,15 @@ function unitSheet(spec) {
     pen.textBaseline = "middle";
     cells.forEach((cell, c) => {
       const { left, top, wide, high } = boxOf(c);
-      const [first, last] = [top + 32, top + high - FOOT - 4]; // above: a name, the scale
+      const [first, last] = [top + HEAD, top + high];
       const middle = (first + last) / 2;
       const tallest = JOINTS.reduce((most, j) => all[2 * c + j].reduce((a, w) => Math.max(a, Math.abs(w)), most), 1e-9);
       pen.font = "13px 'Source Sans 3', system-ui, sans-serif";
-      write(cell, left, top + 9, "left", colours.ink);
+      const size = tallest.toFixed(tallest < 0.0995 ? 3 : tallest < 9.95 ? 2 : 1);
+      write(c < 2 ? `${cell}, ±${size}` : cell, left, top + 9, "left", colours.ink);
       let right = left + wide;
       for (const j of [...JOINTS].reverse()) {
-        const name = SHORT[spec.classes[names[2 * c + j]]] ?? (over ? "none" : "");
+        const name = SHORT[spec.classes[names[2 * c + j]]] ?? (over ? "–" : "");
         write(name, right, top + 9, "right", colours[j ? "elbow" : "shoulder"]);
         right -= name ? pen.measureText(name).width + 7 : 0;
       }
@@ -206,10 +207,10 @@ function unitSheet(spec) {
       line(left, middle, left + wide, middle, colours.soft);
       for (const [t, x, align] of [[-half, 0, "left"], [0, wide / 2, "center"], [half, wide, "right"]]) {
         line(left + x, first, left + x, last, colours.line);
+        if (c > 1) continue;
         const text = format(t, -half, half, "", 0);
         write(align === "right" ? `${text} ms` : text, left + x, last + 10, align, colours.soft);
       }
-      const size = tallest.toFixed(tallest < 0.0995 ? 3 : tallest < 9.95 ? 2 : 1);
       for (const j of JOINTS) {
         const f = all[2 * c + j];
         const y = (w) => middle - (w / tallest) * ((last - first) / 2 - 2);
@@ -221,9 +222,8 @@ function unitSheet(spec) {
         stroke(pen, colour, named ? 2.6 : 1.3, j ? [5, 3] : []);
       }
       pen.setLineDash([]);
-      write(`±${size}`, left, top + 24, "left", colours.soft);
     });
-    const named = cells.map((cell, c) => `${cell}: ${JOINTS.map((j) => spec.classes[names[2 * c + j]]).join(" and ")}`);
+    const named = cells.map((cell, c) => `${c < 2 ? cell : `unit ${cell}`}: ${JOINTS.map((j) => spec.classes[names[2 * c + j]]).join(" and ")}`);
     el.setAttribute("aria-label", `Weights from each joint's window. ${named.join("; ")}`);
   });
   return place;
@@ -388,21 +388,33 @@ function build({ model, el }) {
   const history = [];
   const key = NAMES.map((name, j) => make("span", {}, swatch("line", `${name} d${j}`), `${name}'s window`));
   const letters = make("span", {}, "bold: has a name (a acceleration, v velocity, j jerk)");
-  const hands = make("div", { class: "hands" }, make("div", { class: "buttons" }, play, once, anew), settings[0], status, weighed, list);
+  const box = (name, ...children) => make("div", { class: name }, ...children);
+  const hands = box("hands", box("buttons", play, once, anew), settings[0], status);
+  const title = make("span", { class: "title" }, "Weights over the window: direct, then hidden units");
+  const more = make(
+    "details",
+    { class: "more" },
+    make("summary", {}, "Your own experiment: motions, start, step, momentum, speed"),
+    box("picks", picks.svg, box("own", picks.title, picks.table, picks.buttons, recorded)),
+    box("settings", first, ...settings.slice(1)),
+    runs,
+    drawn[2].el,
+    make("p", { class: "remark" }, spec.hint),
+  );
   el.replaceChildren(
     frame.el,
     guess,
-    make("div", { class: "bench" }, hands, make("div", { class: "results" }, drawn[0].el)),
-    said,
+    box(
+      "bench",
+      hands,
+      box("course", drawn[0].el),
+      box("told", weighed, list),
+      box("torque", drawn[1].el),
+      said,
+      box("weights", box("legend", title, ...key, letters), units.el),
+    ),
     spoken,
-    make("div", { class: "title" }, "Weights over the window: the direct ones, then those of the hidden units"),
-    make("div", { class: "legend" }, ...key, letters),
-    units.el,
-    make("div", { class: "charts" }, ...drawn.slice(1).map((one) => one.el)),
-    make("div", { class: "settings" }, first, ...settings.slice(1)),
-    make("div", { class: "picks" }, picks.svg, make("div", {}, picks.title, picks.table, picks.buttons, recorded)),
-    runs,
-    make("p", { class: "remark" }, spec.hint),
+    more,
   );
 
   // Time
@@ -569,6 +581,7 @@ function build({ model, el }) {
   let silent = false; // while one side takes over what the other has set
   keep("extents", () => picks.extents.flat().join("_"), (text) => picks.set(text.split("_").map(Number)), spec.extents.flat().join("_"));
   enrol();
+  more.open = own() || ["inputs", "step", "momentum", "speed", "loop"].some((name) => state[name] !== start[name]);
   truth = measured();
   frame.keep("epoch", () => String(school.epoch), (text) => {
     const epoch = Math.round(Number(text));

@@ -77,7 +77,7 @@ class WeightReader(_HintonWidget):
         }
         unit = self._names[0] if unit is None else unit
         rows = {name: f"the {name}'s" for name in JOINTS}
-        scale_of = {False: "each row has its own", True: "as in the report"}
+        scale_of = {False: "row by row", True: "as in the report"}
         part = {False: "as trained", True: "what training added"}
         super().__init__(
             trained,
