@@ -117,7 +117,7 @@ extras.push((view) => {
   const guess = make("div", { class: "guess" }, verdict, ask, answers);
   let [first, second] = ["", ""];
   const four = terms.filter((name) => name !== SUM && name !== FRICTION);
-  const rms = (name, joint = "elbow") => rmsOf(view.curves[`${joint} ${name}`]);
+  const rms = (name) => rmsOf(view.curves[`elbow ${name}`]);
   const top = () => four.reduce((a, b) => (rms(b) > rms(a) ? b : a));
   const BETS = ["They gain", "The ratio stays", "They fall behind"];
   let shown = null;
