@@ -85,27 +85,21 @@ def test_the_page_computes_the_same(page_with, terms):
 
 def names(page):
     page.evaluate(NEXT_FRAME)
-    return page.locator(".terms tbody th span").all_inner_texts()
+    return page.locator(".chart").nth(1).locator(".legend span").all_inner_texts()
 
 
 @pytest.mark.browser
 def test_guess_then_double_the_speed(page_with, terms):
     page = page_with(terms)
     assert names(page)[1:5] == list("ABCD")
-    assert "coupling" not in page.locator(".chart").nth(1).inner_text()
-    before = page.locator(".terms tbody tr").nth(2).locator("td").all_inner_texts()
     page.get_by_role("button", name="inertial").press("Enter")
     assert names(page)[1:5] == list(TERMS)
-    assert "coupling" in page.locator(".chart").nth(1).inner_text()
     verdict = page.locator(".guess .verdict")
     assert verdict.inner_text().startswith("Not inertial: the largest at the elbow is coupling")
     page.get_by_role("button", name="The ratio stays").click()
     assert verdict.inner_text().startswith("Yes, the ratio stays")
     assert_curves(page, terms.curves_at(doubled=True))
     assert page.get_by_role("switch", name="Double the speed").is_checked()
-    after = page.locator(".terms tbody tr").nth(2).locator("td").all_inner_texts()
-    values = [[float(x.replace("−", "-")) for x in row] for row in (before, after)]
-    np.testing.assert_allclose(values[1], 4 * np.array(values[0]), atol=0.03)
 
 
 @pytest.mark.browser

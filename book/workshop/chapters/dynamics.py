@@ -25,7 +25,6 @@ from ddlib.dynamics import (
 from ddlib.figures.style import (
     FAINT,
     INK,
-    JOINTS,
     NARROW,
     TONES,
     Illustration,
@@ -54,23 +53,17 @@ _TIMES = np.arange(300) * 0.01
 
 
 def _quoted() -> None:
-    """What gears hide, what recursion and simplification save, and what the latter loses."""
+    """What gears hide."""
     motion = pick_and_place(APPENDIX_I[0], _TIMES)
     share = 100 * share_of_other_joint(ARM, motion, [1.0, 100.0], PUMA_560_ROTORS[0])[:, 1]
     quote("dynamics-gear-direct", share[0])
     quote("dynamics-gear-hundred", share[1])
-    quote("dynamics-recursion", recursion().value)
-    quote("dynamics-cheap", 100 * ignoring_terms().value)
-    driven = pick_and_place(APPENDIX_I[[0, 1, 2, 5]], _TIMES)
-    lost = 100 * share_of_velocity_terms(ARM, driven, effects=JOINT_DAMPING.effects)
-    for joint, share in zip(JOINTS, lost):
-        quote(f"dynamics-dropped-{joint}", share)
 
 
-def _exercise(number: int, M=None) -> Exercise:
-    """An exercise; the first needs the lesson's mass matrix `M`."""
+def _exercise(number: int, given: float = 0.0) -> Exercise:
+    """An exercise; the first needs the lesson's b / d, the fourth its b."""
     if number == 1:
-        lag = M(np.zeros(2))[1, 0] / M(np.zeros(2))[1, 1]
+        lag = 1 + given
         slips = (
             (lag, "the sign. Which way does the forearm turn?"),
             (-1.0, "then the forearm would keep its direction. Does it?"),
@@ -92,6 +85,15 @@ def _exercise(number: int, M=None) -> Exercise:
         return Exercise(
             "numbers", unseen, reason, otherwise="write down both torques with the elbow straight."
         )
+    elif number == 4:
+        slips = (
+            (6 * given, "the sign. Does the elbow, as it bends further, make M larger or smaller?"),
+            (0.0, "no joint accelerates, but the elbow turns, and M depends on its angle."),
+            (-12 * given, "a half: the energy has one before its M."),
+        )
+        hint = "no joint accelerates. Which part of the energy still changes in time?"
+        reason = "no motor took this energy, so the model lacks something."
+        return Exercise("number", -6 * given, reason, slips, hint, unit="W")
     else:
         size = lambda x: excitation(pick_and_place(np.reshape(x, (2, 2)), _TIMES))  # noqa: E731
         slips = (

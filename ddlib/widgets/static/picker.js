@@ -231,6 +231,10 @@ extras.push((view) => {
   view.controls.append(verdict);
   if (!model.kernelless) view.controls.append(make("div", { class: "record" }, record, said));
   view.top.append(make("div", { class: "arm-box" }, arm.svg, make("div", { class: "player" }, clock.play, clock.el)));
+  const charts = view.el.querySelector(".charts");
+  const scene = make("div", { class: "scene" });
+  charts.after(scene);
+  scene.append(view.top, charts);
   const follow = (curves) => {
     arm.path(curves);
     clock.show();

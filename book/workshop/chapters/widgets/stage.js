@@ -10,9 +10,9 @@ export function armsOf(lengths, kinds, [left, bottom, right, top], label) {
   const y = (v) => short(scale * (top - v));
   const arms = new Map(
     kinds.map((kind) => {
-      const line = make("path", { class: "links" });
+      const links = ["upper", "fore"].map((link) => make("path", { class: `links ${link}` }));
       const hand = make("circle", { class: "hand", r: 4 });
-      return [kind, { line, hand, el: make("g", { class: `arm ${kind}` }, line, hand) }];
+      return [kind, { links, hand, el: make("g", { class: `arm ${kind}` }, ...links, hand) }];
     }),
   );
   const base = make("circle", { class: "joint", cx: x(0), cy: y(0), r: 6 });
@@ -21,9 +21,11 @@ export function armsOf(lengths, kinds, [left, bottom, right, top], label) {
   svg.setAttribute("aria-label", label);
   svg.append(...[...arms.values()].map(({ el }) => el), base);
   const place = (kind, q) => {
-    const { line, hand } = arms.get(kind);
+    const { links, hand } = arms.get(kind);
     const [elbow, end] = placesOf(lengths, q);
-    line.setAttribute("d", `M${x(0)} ${y(0)}L${x(elbow[0])} ${y(elbow[1])}L${x(end[0])} ${y(end[1])}`);
+    const at = ([a, b]) => `${x(a)} ${y(b)}`;
+    links[0].setAttribute("d", `M${at([0, 0])}L${at(elbow)}`);
+    links[1].setAttribute("d", `M${at(elbow)}L${at(end)}`);
     put(hand, { cx: x(end[0]), cy: y(end[1]) });
   };
   return { svg, place, arms };

@@ -1,9 +1,9 @@
 // What TorqueTerms (terms.py) computes and adds to a CurveWidget: the arm along its motion, the torque
-// of each joint as an arrow, the terms as a table, and two guesses.
+// of each joint as an arrow, and two guesses.
 
 import { clockOf } from "ddlib/clock.js";
 import { computes, extras } from "ddlib/curves.js";
-import { buttonOf, make, short, swatch, write } from "ddlib/elements.js";
+import { buttonOf, make, short, write } from "ddlib/elements.js";
 import { JOINTS, NAMES, pickAndPlace, placesOf } from "ddlib/engine.js";
 import { armTorque, frictionTorque } from "ddlib/physics.js";
 import { armsOf } from "./stage.js";
@@ -92,26 +92,6 @@ extras.push((view) => {
   const scale = 300 / (box[2] - box[0]);
   const px = ([x, y]) => [scale * (x - box[0]), scale * (box[3] - y)];
 
-  // The terms as a table: now, and over the whole motion
-  const rows = new Map(
-    terms.map((name) => {
-      const head = make("th", { scope: "row" }, make("span", {}, name));
-      const [, , look] = spec.panels[0].curves[terms.indexOf(name)];
-      head.prepend(swatch("line", look));
-      const cells = NAMES.map(() => ({ now: make("td", {}), bar: make("span", { class: `bar-of ${look}` }), rms: make("td", {}) }));
-      const text = cells.map(({ now, bar }) => now.appendChild(make("span", {})) && (now.append(make("span", { class: "lane" }, bar)), now.firstChild));
-      const el = make("tr", {}, head, ...cells.flatMap(({ now, rms }) => [now, rms]));
-      return [name, { el, name: head.lastChild, cells, text }];
-    }),
-  );
-  const th = (text, given) => make("th", { scope: "col", ...given }, text);
-  const heads = [
-    make("tr", {}, make("td", {}), ...NAMES.map((joint) => th(`${joint}, N m`, { colspan: 2 }))),
-    make("tr", {}, make("td", {}), ...NAMES.flatMap(() => [th("now"), th("RMS")])),
-  ];
-  const caption = make("caption", {}, "Torque now, and its root mean square (RMS) over the motion");
-  const table = make("table", { class: "terms" }, caption, make("thead", {}, ...heads), make("tbody", {}, ...[...rows.values()].map(({ el }) => el)));
-
   let motion = motionOf(view);
   const largest = () => NAMES.map((joint) => Math.max(...view.curves[`${joint} ${SUM}`].map(Math.abs)) || 1);
   function draw(now) {
@@ -123,13 +103,6 @@ extras.push((view) => {
     const places = placesOf(lengths, q);
     turns[0].draw(px([0, 0]), q[0], torque[SUM][0] / most[0]);
     turns[1].draw(px(places[0]), q[0] + q[1], torque[SUM][1] / most[1]);
-    for (const [name, { cells, text }] of rows) {
-      cells.forEach(({ bar }, j) => {
-        const share = Math.max(-1, Math.min(1, torque[name][j] / most[j]));
-        write(text[j], torque[name][j].toFixed(2).replace("-", "−"));
-        bar.style.cssText = `width:${short(50 * Math.abs(share))}%;left:${short(share < 0 ? 50 + 50 * share : 50)}%`;
-      });
-    }
     view.charts.forEach((c) => c.point(100 * part));
   }
   const { seconds: end } = model.get("moving");
@@ -144,7 +117,7 @@ extras.push((view) => {
   const guess = make("div", { class: "guess" }, verdict, ask, answers);
   let [first, second] = ["", ""];
   const four = terms.filter((name) => name !== SUM && name !== FRICTION);
-  const rms = (name, joint = "elbow") => rmsOf(view.curves[`${joint} ${name}`]);
+  const rms = (name) => rmsOf(view.curves[`elbow ${name}`]);
   const top = () => four.reduce((a, b) => (rms(b) > rms(a) ? b : a));
   const BETS = ["They gain", "The ratio stays", "They fall behind"];
   let shown = null;
@@ -177,7 +150,6 @@ extras.push((view) => {
     ];
     answers.replaceChildren(...choose[stage].map(([text, act]) => buttonOf(text, act)));
     const name = (term) => (stage || !four.includes(term) ? term : LETTERS[four.indexOf(term)]);
-    for (const [term, row] of rows) write(row.name, name(term));
     for (const chart of view.charts) {
       chart.rename([...terms.map(name), BEFORE]);
       chart.describe(view.curves);
@@ -201,8 +173,9 @@ extras.push((view) => {
   view.top.prepend(make("div", { class: "arm-box" }, stage.svg, player));
   view.controls.append(guess);
   const charts = view.el.querySelector(".charts");
-  charts.before(view.numbers); // near the handle, on a phone too
-  charts.after(make("div", { class: "table-box" }, table));
+  const scene = make("div", { class: "scene" });
+  charts.after(scene);
+  scene.append(view.top, view.numbers, charts);
   let rate = 0;
   let path = "";
   const follow = () => {
@@ -210,13 +183,8 @@ extras.push((view) => {
     const chosen = String(extents[view.get("motion") - 1]);
     if (path !== chosen) ghosts.forEach((kind, k) => stage.place(kind, motion.stateAt(k / 8).q));
     path = chosen;
-    const rubs = view.get("friction");
-    rows.get(FRICTION).el.hidden = !rubs;
-    view.el.classList.toggle("rubs", rubs);
+    view.el.classList.toggle("rubs", view.get("friction"));
     view.el.classList.toggle("doubled", view.get("doubled"));
-    for (const [name, { cells }] of rows) {
-      cells.forEach((cell, j) => write(cell.rms, rms(name, NAMES[j]).toFixed(2)));
-    }
     if (rate && rate !== motion.seconds) clock.again();
     rate = motion.seconds;
     clock.show();

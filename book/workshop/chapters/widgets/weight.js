@@ -139,6 +139,10 @@ extras.push((view) => {
   view.words = () => [words().slice(0, -1)].filter(Boolean);
   view.controls.append(make("div", { class: "walk" }, single, ten, status));
   view.top.append(make("div", { class: "unit-box" }, unit.svg, view.numbers));
+  const charts = view.el.querySelector(".charts");
+  const scene = make("div", { class: "scene" });
+  charts.after(scene);
+  scene.append(view.top, charts);
   const dots = (weights) =>
     weights.map((w) => chart.at(w, unitAt(w).error).map(short)).map(([x, y]) => `M${x} ${y}h0`).join("");
   const follow = () => {
