@@ -154,7 +154,7 @@ class WriteTheLoad(CurveWidget):
         ]
         super().__init__(
             self._curves,
-            [Parameter("load", "Kilograms in the hand", 0, 5, 0.5, "kg", grid=11)],
+            [Parameter("load", "Kilograms in the hand", 0, 5, 3.0, "kg", grid=11)],
             [*rows, *torques],
             alt="Four rows of direct weights, into which parabolas grow. Below them torques of "
             "both joints over time: of the loaded arm, of the network as trained, and as written.",
