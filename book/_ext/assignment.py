@@ -212,7 +212,7 @@ def notebook(path: Path, variant: int = 0):
             found = re.findall("^##+ .+$", head, re.MULTILINE)
             told = found[-1] if found and not below else told
             if own:
-                below = True
+                below, told = True, ""
                 cells += _formulas(words) + _quiz(words, quiz)
                 cells.append(_cell("markdown", OWN.strip()))
                 texts = asked(lesson)
@@ -225,7 +225,7 @@ def notebook(path: Path, variant: int = 0):
             source = f"from judge import check\n\n{source}"
             cells.append(_cell("code", source, f"check-{count}"))
             cells.append(_cell("markdown", HOW.format(count), f"how-{count}"))
-        elif not below and is_open(cell):
+        elif is_open(cell):
             role = "settings" if CHANGE_THIS in cell.metadata.get("tags", ()) else ""
             told += f"\n\n{LEAVE}" * bool(role)
             cells += [_cell("markdown", told)] if told else []

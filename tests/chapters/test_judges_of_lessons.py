@@ -3,10 +3,8 @@
 from types import SimpleNamespace
 
 import numpy as np
-import pytest
 
 from workshop.chapters import (
-    convolution_filters,
     hinton_diagrams,
     inertia_in_the_weights,
     whose_filters,
@@ -47,18 +45,6 @@ def test_rows_after_a_step_are_judged_with_and_without_the_start(capsys):
                (rough, rough): "Wrong: subtract the start", (0.0, 0.0): "Wrong: take"}  # fmt: skip
     for answer, begins in answers.items():
         assert judged(hinton_diagrams, answer, networks, capsys=capsys).startswith(begins)
-
-
-@pytest.mark.parametrize(
-    "row, answer",
-    [(np.ones(WIDTH), 2.177), (K / (K @ X), 1.0), (1.0 * (K == 0), 0.1), (1.0 * (K == 10), 0.21)],
-)
-def test_a_row_gives_what_it_gives_for_the_motion_itself(row, answer, capsys):
-    """0.1 + x + x² at each sample: 2.1 by position and 0.077 by acceleration, of a row of ones."""
-    text = judged(convolution_filters, answer, row, 0.01, capsys=capsys)
-    assert text.startswith("Right: a row adds up its answers")
-    wrong = row @ (0.1 - X + 2 * X**2) + 0.05
-    assert judged(convolution_filters, wrong, row, 0.01, capsys=capsys).startswith("Wrong")
 
 
 def test_the_filter_with_the_recorded_torques_is_found_whatever_its_shape(capsys):

@@ -191,12 +191,15 @@ def figures_are_made_in_the_open(notebook) -> list:
 
 
 def exercises_wait_for_an_answer(notebook) -> list:
-    """A question, an empty starter, a check, a folded solution; a lesson may have no exercises."""
-    cells = exercises(notebook)
+    """A question, an empty starter, a check, a folded solution; a lesson may have no exercises.
+
+    What a question shows stands open above its starter.
+    """
+    cells, shown = exercises(notebook), visible(notebook)
     kinds = [
         "starter" if is_starter(cell) else "check" if is_check(cell) else cell.id
         for cell in cells
-        if cell.cell_type == "code"
+        if cell.cell_type == "code" and (is_starter(cell) or cell not in shown)
     ]
     asked = len(re.findall(r"^\*\*\d+\. ", prose(notebook).partition(f"## {OWN}")[2], re.M))
     wrong = [] if kinds == ["starter", "check"] * asked else [kinds]

@@ -54,8 +54,9 @@ def by_keyboard(page) -> str:
             continue
         for key in ("ArrowRight", "ArrowUp", "Space", "Home"):
             handle.press(key)
-        page.evaluate(NEXT_FRAME)
-        if copied(page, "Link") != start:
+            page.evaluate(NEXT_FRAME)
+            if copied(page, "Link") == start:
+                continue
             for running in page.get_by_role("button", name="Pause").all():
                 running.click()
             page.evaluate(NEXT_FRAME)

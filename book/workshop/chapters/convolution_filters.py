@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ddlib.analysis import DERIVATIVES, classify, purest, roughness, shares, upright
+from ddlib.analysis import DERIVATIVES, classify, decompose, purest, roughness, shares, upright
 from ddlib.figures.style import (
     FAINT,
     INK,
@@ -124,13 +124,18 @@ def _quoted() -> None:
         quote(f"filters-{name}", 100 * named_in_trial(name)[0].mean())
     for name, share in zip(("carried", "carried-bend"), shares(carried())[1:3]):
         quote(f"filters-{name}", 100 * share)
+    row = carried() / abs(carried()).max()
+    quote("filters-row", ", ".join(f"{w:.2f}".replace("-", "−") for w in row))
+    parts = decompose(row)
+    for name, value in zip(("constant", "even", "odd"), parts):
+        quote(f"filters-row-{name}", float(np.ravel(value)[-1]))
     constant = shares(results.networks(21).weights.hidden_weights)[..., 0]
     quote("filters-constant", 100 * float(np.median(constant)))
 
 
-def _exercise(number: int, given, step: float = 0.0) -> Exercise:
-    """An exercise: `given` a window's samples, or a row of weights with their step in seconds."""
-    k = np.arange(window := np.size(given) if number == 4 else given) - window // 2.0
+def _exercise(number: int, window: int) -> Exercise:
+    """An exercise, in a window of as many samples."""
+    k = np.arange(window) - window // 2.0
     if number == 1:
         slips = [
             (1.0, "this holds for a window of three. In a longer window the line runs on."),
@@ -143,7 +148,7 @@ def _exercise(number: int, given, step: float = 0.0) -> Exercise:
             slips,
             "divide the energy along the line by that of the whole filter.",
         )
-    elif number == 2:
+    if number == 2:
         early = (k - 3) ** 2
         share = shares(early - early.mean())[2]
         return Exercise(
@@ -152,45 +157,25 @@ def _exercise(number: int, given, step: float = 0.0) -> Exercise:
             f"{share:.2f} of its energy goes to acceleration, and the rest to velocity.",
             otherwise="this is too far off. Expand (k - 3)² and compare the parts.",
         )
-    elif number == 3:
-        powers = np.stack([k**n / np.linalg.norm(k**n) for n in range(4)])
+    powers = np.stack([k**n / np.linalg.norm(k**n) for n in range(4)])
 
-        def hears(f):
-            return np.abs(powers @ f) / np.linalg.norm(f) > 1e-6
+    def hears(f):
+        return np.abs(powers @ f) / np.linalg.norm(f) > 1e-6
 
-        return Exercise(
-            "array",
-            lambda f: hears(f).tolist() == [False] * 3 + [True],
-            "your filter answers to jerk, and to nothing of lower order.",
-            [
-                (
-                    lambda f: hears(f).tolist() == [False, True, False, True],
-                    "a cubic contains a line, so your filter also answers to velocity.",
-                ),
-                (lambda f: not hears(f)[3], "your filter does not answer to jerk."),
-            ],
-            "its sums with 1, k and k² must all be zero.",
-            count=k.size,
-        )
-    else:
-        powers = np.array([0.1 + 0 * k, k, k**2])  # along the motion, in samples
-        parts = powers * step ** np.arange(3.0)[:, None] @ given
-        names = "position", "velocity", "acceleration"
-        answers = ", ".join(f"{part:.3g} to the {name}" for part, name in zip(parts, names))
-        slips = [
-            (parts @ (1, 1, 2), "the second moment counts half."),
-            (parts @ (1, -1, 1), "time runs to the right: mind the sign of the velocity."),
-            (parts @ (0, 1, 1), "the position counts, too: take the sum of the weights."),
-            (parts[2], "this is the answer to the acceleration alone."),
-            (powers.sum(0) @ given, "x is in seconds, not in samples."),
-        ]
-        return Exercise(
-            "number",
-            parts.sum(),
-            f"a row adds up its answers, here {answers}.",
-            slips,
-            "multiply each derivative by its sum over the weights, as in the formula, and add.",
-        )
+    return Exercise(
+        "array",
+        lambda f: hears(f).tolist() == [False] * 3 + [True],
+        "your filter answers to jerk, and to nothing of lower order.",
+        [
+            (
+                lambda f: hears(f).tolist() == [False, True, False, True],
+                "a cubic contains a line, so your filter also answers to velocity.",
+            ),
+            (lambda f: not hears(f)[3], "your filter does not answer to jerk."),
+        ],
+        "its sums with 1, k and k² must all be zero.",
+        count=k.size,
+    )
 
 
 check = judging(_exercise)

@@ -12,13 +12,12 @@ from ddlib.analysis import gains, mean_gradient
 from ddlib.dynamics import IMI_ARM, with_load
 from ddlib.figures.style import FAINT, INK, TONES, Illustration, illustrate
 from ddlib.learning import TorqueModel, Weights, cases
-from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, split, true_states
+from ddlib.setups import INITIAL, JOINT_DAMPING, split, true_states
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote
 from workshop.chapters import excitation, planted
 from workshop.chapters.exercises import Exercise, judging
 from workshop.chapters.index import both
-from workshop.chapters.planted import shapes_and_sizes as shapes_and_sizes
 from workshop.chapters.whose_filters import given, trained
 from workshop.chapters.widgets.pencil import TurnTheParabola, WriteTheLoad
 from workshop.chapters.widgets.weigh import WeighTheArm as WeighTheArm
@@ -127,28 +126,24 @@ def _carried() -> int:
 
 
 def paths_beside() -> Illustration:
-    """Inertia and damping of each path of the landing page's network, and their sum."""
-    by_path, carried = paths(), _carried()
+    """Inertia of each path of the landing page's network, and their sum."""
+    by_path, carried = paths()[:, 2], _carried()
     names = ["direct", *(f"unit {k}" for k in range(1, len(by_path))), "all"]
     names[carried] += ", the row"
     colours = [TONES["network"] if k == carried else FAINT for k in range(len(by_path))]
-    friction = JOINT_DAMPING.effects.friction[0].coefficient[0]
-    panels = {"inertia, kg m²": (2, _arm()), "damping, N m s/rad": (1, friction)}
 
     def draw(figure: Figure):
-        for axis, (label, (k, arm)) in zip(figure.subplots(1, 2, sharey=True), panels.items()):
-            axis.barh(names[:-1], by_path[:, k], color=colours)
-            axis.barh(names[-1:], by_path[:, k].sum(), color=TONES["network"])
-            axis.plot([arm] * 2, [len(by_path) - 0.6, len(by_path) + 0.6], color=INK, lw=3)
-            axis.axvline(0, color=INK, lw=0.8)
-            axis.grid(visible=False, axis="y")
-            axis.set(xlabel=label, ylim=(len(names) - 0.4, -0.6))
+        axis = figure.subplots()
+        axis.barh(names[:-1], by_path, color=colours)
+        axis.barh(names[-1:], by_path.sum(), color=TONES["network"])
+        axis.plot([_arm()] * 2, [len(by_path) - 0.6, len(by_path) + 0.6], color=INK, lw=3)
+        axis.axvline(0, color=INK, lw=0.8)
+        axis.grid(visible=False, axis="y")
+        axis.set(xlabel="inertia, kg m²", ylim=(len(names) - 0.4, -0.6))
 
-    alt = (
-        f"Bars for {len(by_path)} paths, of both signs, and for their sum: inertia "
-        f"{by_path[:, 2].sum():.1f} kg m², damping {by_path[:, 1].sum():.0f} N m s/rad."
-    )
-    return illustrate(draw, alt, 7.0, 3.2, narrow_height=6.0)
+    whole = by_path.sum()
+    alt = f"Bars for {len(by_path)} paths, of both signs, and for their sum, {whole:.1f} kg m²."
+    return illustrate(draw, alt, 7.0, 2.4)
 
 
 def _arm() -> float:
@@ -180,13 +175,9 @@ def _quoted() -> None:
         quote(f"inertia-knob-{name}", answers.mean())
         quote(f"inertia-knob-{name}-least", answers.min())
         quote(f"inertia-knob-{name}-most", answers.max())
-    names = {"unedited": "unedited", "written": "written", "retrained": "retrained",
-             "turned": "turned sign", "factor": "one factor"}  # fmt: skip
-    for name, model in names.items():
-        quote(f"inertia-load-{name}", planted.loaded(JOINT_DAMPING.name, model))
-        quote(f"inertia-load-{name}-state", planted.loaded(STATE_FEEDBACK.name, model))
-        friction = planted.loaded(JOINT_DAMPING.name, model, "more viscous friction")
-        quote(f"inertia-friction-{name}", friction)
+    for model in ("unedited", "written", "retrained", "one factor"):
+        loaded = planted.loaded(JOINT_DAMPING.name, model)
+        quote(f"inertia-load-{model.removeprefix('one ')}", loaded)
     carried, whole = paths()[_carried()], paths().sum(0)
     for name, values in {"row": carried, "row-network": whole}.items():
         quote(f"inertia-{name}", values[2])

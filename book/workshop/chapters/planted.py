@@ -205,6 +205,9 @@ def _quoted() -> None:
     )  # fmt: skip
     quote("planted-networks", setting["networks"])
     quote("planted-days", setting["days"])
+    for name, kind in (("arm", "the arm"), ("position", "position alone")):
+        quote(f"planted-{name}-state", acceleration(kind, True, STATE_FEEDBACK.name))
+        quote(f"planted-{name}-solver", solved(kind))
     every_shift = every("shifted", "knob")
     quote("planted-shifted-least", every_shift.min())
     quote("planted-shifted-most", every_shift.max())

@@ -19,7 +19,7 @@ from ddlib.learning import (
     surrogate,
     train_ensemble,
 )
-from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, split, true_states
+from ddlib.setups import INITIAL, JOINT_DAMPING, split, true_states
 from ddlib.tables import quote
 from workshop.chapters import planted, start
 from workshop.chapters.convolution_filters import _dots, named_in_trial
@@ -194,9 +194,6 @@ def _quoted() -> None:
         quote(f"whose-named-{name}", 100 * start.named(JOINT_DAMPING.name, size).mean())
     for name, kind in (("arm", "the arm"), ("position", "position alone")):
         quote(f"whose-added-{name}", planted.acceleration(kind))
-        quote(f"whose-added-{name}-long", planted.acceleration(kind, long=True))
-        quote(f"whose-added-{name}-state", planted.acceleration(kind, True, STATE_FEEDBACK.name))
-        quote(f"whose-added-{name}-solver", planted.solved(kind))
 
 
 def _exercise(number: int, given, *others) -> Exercise:

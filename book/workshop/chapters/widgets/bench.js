@@ -138,7 +138,7 @@ function build({ model, el }) {
   function layout() {
     const wide = el.clientWidth || 640;
     const narrow = wide < 620;
-    Object.assign(at, { wide, narrow, x0: narrow ? 22 : 120, x1: wide - (narrow ? 84 : BESIDE + 16) });
+    Object.assign(at, { wide, narrow, x0: narrow ? 30 : 120, x1: wide - (narrow ? 84 : BESIDE + 16) });
     const name = narrow ? 20 : 0; // room above a field for its name
     let y = 0;
     const field = (height, over = 0) => {
@@ -146,9 +146,9 @@ function build({ model, el }) {
       y = top + height + 6;
       return { top, height, middle: top + height / 2, name: narrow ? top - 12 - over : top + height / 2 };
     };
-    at.strip = field(88, narrow ? 14 : RISE);
-    at.wire = field(100);
-    at.bands = bands.map(() => field(52));
+    at.strip = field(84, narrow ? 14 : RISE);
+    at.wire = field(90);
+    at.bands = bands.map(() => field(48));
     const high = y + (narrow ? 24 : 36);
     put(svg, { width: wide, height: high, viewBox: `0 0 ${wide} ${high}` });
     at.axis = y + 18;
@@ -307,8 +307,9 @@ function build({ model, el }) {
   function sentence(path) {
     if (get("fold") < 1) return "Take the strip by its right edge and fold it over. By keyboard: arrow keys on the round handles.";
     if (moment >= 0) {
-      const { odd, even } = played;
-      return `Dashed: the joint’s speed and its acceleration, each times a number. They explain ${share(odd.told)} of what went into the odd jar, and ${share(even.told)} of the even jar.`;
+      const { odd, even, constant } = played;
+      const leak = largest(constant.got) > 0.1 * highest ? " The constant lets the position leak in." : "";
+      return `Dashed: the joint’s speed and its acceleration, each times a number. They explain ${share(odd.told)} of the odd jar and ${share(even.told)} of the even jar.${leak}`;
     }
     if (get("lift") === reach.lift / 2 && !get("tilt") && !get("bend")) return "What agrees with its mirror image is the even half, what opposes it the odd half. Now move the wire.";
     const moved = Object.keys(WIRE).filter((name) => Math.abs(get(name)) > 0.02 * reach[name]);

@@ -142,22 +142,20 @@ class WriteTheLoad(CurveWidget):
             )
             for a, b in pairs
         ]  # fmt: skip
-        torques = [
-            Panel(
-                f"{joint.capitalize()} torque, N m",
-                {f"{line}_{joint}": legends[line] for line in lines},
-                "time, s",
-                t,
-                roles=dict(zip(legends.values(), ("measured", "before", "network"))),
-            )
-            for joint in _JOINTS
-        ]
+        torque = Panel(
+            "Shoulder torque, N m",
+            legends,
+            "time, s",
+            t,
+            roles=dict(zip(legends.values(), ("measured", "before", "network"))),
+        )
         super().__init__(
             self._curves,
-            [Parameter("load", "Kilograms in the hand", 0, 5, 0.5, "kg", grid=11)],
-            [*rows, *torques],
-            alt="Four rows of direct weights, into which parabolas grow. Below them torques of "
-            "both joints over time: of the loaded arm, of the network as trained, and as written.",
+            [Parameter("load", "Kilograms in the hand", 0, 5, 3.0, "kg", grid=11)],
+            [*rows, torque],
+            alt="Four rows of direct weights, into which parabolas grow. Beside them the "
+            "shoulder's torque over time: of the loaded arm, of the network as trained, and as "
+            "written.",
             title="Write the load",
             scalars=[
                 Scalar("as_trained", "RMSS as trained", digits=3),
@@ -183,10 +181,8 @@ class WriteTheLoad(CurveWidget):
             "as_trained": rmss(told["trained"], torque),
             "as_written": rmss(told["written"], torque),
         }
-        for j, joint in enumerate(_JOINTS):
-            for name, values in told.items():
-                curves[f"{name}_{joint}"] = values[::_EVERY, j]
-            for i in range(2):
-                curves[f"row_{i}_{j}"] = model.weights.direct_weights[0, j, i]
-                curves[f"more_{i}_{j}"] = extra[j, i]
+        curves |= {name: values[::_EVERY, 0] for name, values in told.items()}
+        for j, i in np.ndindex(2, 2):
+            curves[f"row_{i}_{j}"] = model.weights.direct_weights[0, j, i]
+            curves[f"more_{i}_{j}"] = extra[j, i]
         return curves

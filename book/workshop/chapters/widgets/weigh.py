@@ -39,15 +39,15 @@ class WeighTheArm(CurveWidget):
         width = np.shape(gradients[names[0]])[-1]
         self._gradients, self._inertia = gradients, inertia
         self._x = (np.arange(width) - width // 2) * LOG_STEP
-        reaches = range(1, width // 2 + 1)
+        reaches = range(width // 2 + 1)
         time = 1e3 * self._x
         shade = {"cursor": ("first", "last")}
         super().__init__(
             self._curves,
             [
                 Choice(
-                    "reach", "Count samples up to", {k: f"±{10 * k} ms" for k in reaches}, 3,
-                    "slider",
+                    "reach", "Count samples up to",
+                    {k: f"±{10 * k} ms" if k else "0 ms" for k in reaches}, 0, "slider",
                 ),
                 Choice("learnt", "Learnt", names, names[0]),
                 Choice("entry", "Inertia of the", list(_ENTRIES), "shoulder"),
@@ -76,7 +76,8 @@ class WeighTheArm(CurveWidget):
                 Scalar("now", "Sum", "kg m²", 2),
                 Scalar("true", "The arm's own", "kg m²", 2),
             ],
-            note="Each sample adds ½ x² g. Shaded: the samples that are added up so far.",
+            note="Each sample adds ½ x² g, and takes it away where g is negative. Shaded: the "
+            "samples that are added up so far.",
         )  # fmt: skip
 
     def _curves(self, reach, learnt, entry) -> dict:

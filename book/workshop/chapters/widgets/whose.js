@@ -6,7 +6,7 @@ import { frameOf } from "ddlib/frame.js";
 
 const SIDES = ["A", "B"];
 const COLUMNS = 5;
-const [WIDE, HIGH, GAP] = [60, 44, 6]; // of a filter's field, and what it leaves free
+const [WIDE, HIGH, GAP] = [60, 30, 6]; // of a filter's field, and what it leaves free
 
 // Which colour a filter has once the answer is there.
 const KINDS = { acceleration: "even", velocity: "odd", "velocity + acceleration": "c0", "not analysable": "none" };

@@ -11,7 +11,7 @@ import numpy as np
 import traitlets as t
 
 from ddlib.analysis import classify
-from ddlib.figures import INK, illustrate
+from ddlib.figures import TONES, illustrate
 from ddlib.widgets.base import PageWidget
 from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.still import START, encoded
@@ -85,7 +85,7 @@ def _still(sides, alt: str) -> str:
             for axis in axes:
                 axis.set_axis_off()
             for axis, row in zip(axes, rows):
-                axis.plot(row, color=INK, lw=1.2)
+                axis.plot(row, color=TONES["network"], lw=1.2)
                 axis.set_ylim(-1.1, 1.1)
             part.suptitle(letter)
 
