@@ -74,7 +74,7 @@ def late_helper(lateness: float = 1 / 14) -> Illustration:
         legend_above(figure, *over_time.get_legend_handles_labels())
 
     alt = "A late spring pushes on after the middle; its torque runs round a loop over the angle."
-    return illustrate(draw, alt, 7.0, 2.5)
+    return illustrate(draw, alt, 7.0, 2.2)
 
 
 def _exercise(number: int, inertia: float, friction: float, period: float) -> Exercise:

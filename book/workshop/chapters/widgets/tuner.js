@@ -113,12 +113,12 @@ extras.push((view) => {
   const row = make("div", { class: "time" }, clock.play, clock.el);
   const scene = make("div", { class: "scene" }, stage.svg, legend, row);
   const first = make("div", { class: "charts first" }, ...view.charts.slice(0, 2).map((c) => c.el), scene);
-  const told = make("div", { class: "told-so" }, verdict, remedy, pointer);
+  const told = make("div", { class: "told-so" }, verdict, pointer, remedy);
   const switches = make("div", { class: "controls" }, ...view.controls.querySelectorAll(".switch, .menu"));
   const names = spec.parameters.filter((p) => p.options && p.display !== "slider").map((p) => p.name);
   const what = view.charts[2].panel.y_label.split(",")[0].replace(/^\w+ /, "");
   const summary = make("summary", {}, `More: feedforward, load, friction, noise, a weak motor, and each ${what}`);
-  const more = make("details", { class: "more" }, summary, switches, el.querySelector(":scope > .charts"));
+  const more = make("details", { class: "more" }, summary, switches, el.querySelector(":scope > .charts"), ...el.querySelectorAll(":scope > .remark"));
   const opened = () => (more.open ||= names.some((name) => view.get(name) !== view.parameter(name).value));
   opened();
   view.top.append(view.numbers, first, told, more);
