@@ -58,4 +58,4 @@ def poles_and_bode(
         pair[1].set(ylabel="phase, °", xlabel="frequency, rad/s", xlim=(w[0], w[-1]))
         pair[0].legend(pair[0].lines[:: len(pair[0].lines) // len(loops)], list(loops))
 
-    return illustrate(draw, alt, 7.0, 3.4, narrow_height=7.0)
+    return illustrate(draw, alt, 7.0, 2.9, narrow_height=7.0)

@@ -42,7 +42,7 @@ def answered(path, answers, name=""):
         if role in answers:
             cell.source = answers[role]
         needed = (
-            role in (*KEPT, "quiz", "answer", "check", "how", "name") or "J, F = M" in cell.source
+            role in (*KEPT, "quiz", "answer", "check", "how", "name") or "J, F = " in cell.source
         )
         cells += [cell] * needed
     made.cells = cells

@@ -18,8 +18,8 @@ FOCUSED = ":focus" if chromium.FIREFOX else ":focus-visible"  # which keys alone
 HEADER = 64
 """What the page keeps for itself at the top, px."""
 
-RESULTS = (".scalars, .chart > svg", "canvas, svg", ".sentence")
-"""What shows a widget's result: its numbers and charts, otherwise what it draws, what it says."""
+RESULTS = (".scalars", ".chart > svg", "canvas, svg", ".sentence")
+"""What shows a widget's result: its numbers, otherwise its charts, what it draws, what it says."""
 
 LEAST = 20
 """Height from which something is a result and not the sample of a legend, px."""

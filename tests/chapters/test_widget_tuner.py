@@ -112,10 +112,15 @@ def swing(run, begin, end):
     return max(np.ptp(run[f"{joint} error"][at]) / 2 for joint in JOINTS)
 
 
+def asked(tuner):
+    """Its questions, with the runs before and after what each asks about."""
+    questions = tuner.loop["questions"]
+    return questions, *zip(*([known_run(**x) for x in q["settings"]] for q in questions))
+
+
 def test_what_happens_if(tuner):
     """Each answer that the page calls right, by ddlib, with a margin."""
-    questions = tuner.loop["questions"]
-    before, after = zip(*([known_run(**x) for x in q["settings"]] for q in questions))
+    questions, before, after = asked(tuner)
     for k in (0, 2, 4, 5):
         assert "grows" in questions[k]["choices"][questions[k]["right"]]
         assert after[k]["growth"] > 0.5 and after[k]["stopped"] < 2.8
@@ -123,16 +128,27 @@ def test_what_happens_if(tuner):
     for k in (1, 3):  # settles, where it grew
         assert before[k]["growth"] > 0.5 and after[k]["growth"] < -2
         assert swing(after[k], 2, 3) < swing(known_run(), 2, 3) / 5
-    limited, cured = after[6], known_run(**{**questions[6]["settings"][1], "limit": "anti-windup"})
-    assert limited["growth"] < -1 and np.isnan(before[6]["stopped"])
-    assert np.nanmax(np.abs(limited["shoulder error"])) > 20
-    assert np.abs(cured["shoulder error"]).max() < 8
-    first = [x[7]["shoulder torque"][0] for x in (before, after)]
-    assert first[1] == pytest.approx(2 * first[0], rel=0.01) and first[0] < -10
     for joint in JOINTS:
-        off, on = (x[8][f"{joint} error"] for x in (before, after))
+        off, on = (x[6][f"{joint} error"] for x in (before, after))
         assert rms(on[LATE]) < rms(off[LATE]) / 2
         assert np.abs(on).max() == pytest.approx(np.abs(off).max(), rel=0.1)
+
+
+def test_what_happens_if_torque_comes_first():
+    tuner = PIDTuner(first="torque", kd=97.5)
+    questions, before, after = asked(tuner)
+    assert tuner.kd == 97.5 and len(questions) == 3
+    clean, coarse = (x[0]["shoulder torque"] for x in (before, after))
+    jumps = np.abs(np.diff(coarse - clean))
+    assert 45 < np.percentile(jumps[jumps > 20], 50) < 65  # N m: of one count
+    assert after[0]["growth"] < 0
+    assert swing(after[0], 1, 3) == pytest.approx(swing(before[0], 1, 3), abs=0.1)
+    limited, cured = after[1], known_run(**{**questions[1]["settings"][1], "limit": "anti-windup"})
+    assert limited["growth"] < -1 and np.isnan(before[1]["stopped"])
+    assert np.nanmax(np.abs(limited["shoulder error"])) > 20
+    assert np.abs(cured["shoulder error"]).max() < 8
+    first = [x[2]["shoulder torque"][0] for x in (before, after)]
+    assert first[1] == pytest.approx(2 * first[0], rel=0.01) and first[0] < -10
 
 
 # In a page without a kernel
@@ -201,6 +217,7 @@ def test_a_slow_drag_and_a_quick_click_begin_once(page_with, tuner):
     page.evaluate(NEXT_FRAME)
     assert page.evaluate(SEEN)["before"] == START
     kp = value_of(page, tuner, "kp")
+    page.locator(".more summary").click()
     page.locator("input[id$=-dry]").click()
     page.evaluate(NEXT_FRAME)
     assert page.evaluate(SEEN)["before"] == {**START, "kp": pytest.approx(kp)}
@@ -222,6 +239,7 @@ def test_switches(page_with, tuner, setting):
     query = ",".join(f"{k}:{x}" for k, x in texts.items())
     page = page_with(tuner, query=f"?pidtuner={query}", calm=True)
     assert_computed(page, **setting)
+    assert page.locator("input[id$=-dry]").is_visible()  # what is set is shown
     most = np.nanmax(np.abs(np.array(page.evaluate(SEEN)["torque"], float)), axis=1)
     assert ("limit" in setting) == bool((most <= [20, 6]).all())
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import control
 import numpy as np
+from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
 from ddlib.control import linear
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import Effects, Load
+from ddlib.figures.style import FAINT, TONES, Illustration, illustrate, legend_above, looks
 from ddlib.setups import JOINT_DAMPING_KP as KP, JOINT_DAMPING_VISCOUS as VISCOUS
 from ddlib.simulation import CONTROL_STEP
 from ddlib.tables import quote, significant
@@ -29,6 +31,50 @@ def _quoted() -> None:
 
     rule = 2 * VISCOUS[0] / CONTROL_STEP  # N m/rad
     quote("pid-alone", KP[0] / rule * brentq(growth, 1.0, 40.0))
+
+
+def late_helper(lateness: float = 1 / 14) -> Illustration:
+    """One swing of the elbow on its spring, which is late by a share of the swing.
+
+    Over time, and as a loop of torque over angle, whose area is the energy that the swing gains.
+    """
+    stiffness, swing = KP[1], np.deg2rad(2.0)  # N m/rad, rad
+    turn = 2 * np.pi * np.linspace(0, 1, 721)
+    angle = swing * np.cos(turn)
+    torques = {
+        "spring on time": -stiffness * angle,
+        "late spring": -stiffness * swing * np.cos(turn - 2 * np.pi * lateness),
+    }
+    look = looks(("angle", *torques), {"late spring": "elbow", "spring on time": "wanted"})
+    late = torques["late spring"]
+    helps = (late * torques["spring on time"] < 0) & (late * -np.sin(turn) > 0)
+
+    def draw(figure: Figure):
+        over_time, over_angle = figure.subplots(1, 2)
+        over_time.axhline(0, color=FAINT, lw=0.8)
+        over_time.fill_between(
+            turn / (2 * np.pi), -1, 1, helps, color=TONES["elbow"], alpha=0.2, lw=0
+        )
+        shown = {"angle": angle / swing}
+        shown |= {name: torque / (stiffness * swing) for name, torque in torques.items()}
+        for name, values in shown.items():
+            over_time.plot(turn / (2 * np.pi), values, label=name, **look[name].line)
+        over_time.set(xlabel="time, swings", ylabel="share of the largest")
+        x = np.rad2deg(angle)
+        over_angle.fill(x, late, color=TONES["elbow"], alpha=0.2, lw=0)
+        for name, torque in torques.items():
+            over_angle.plot(x, torque, label=name, **look[name].line)
+        over_angle.set(xlabel="angle, °", ylabel="torque, N m")
+        for k in (190, 550):  # just past the middle, there and back
+            way = {"arrowstyle": "->", "color": TONES["elbow"], "lw": 1.5}
+            ends = [(x[at], late[at]) for at in (k - 25, k)]
+            over_angle.annotate("", xytext=ends[0], xy=ends[1], arrowprops=way)
+        place = {"transform": over_angle.transAxes, "ha": "right", "va": "top"}
+        over_angle.text(0.98, 0.97, "area: energy\ngained in a swing", **place)
+        legend_above(figure, *over_time.get_legend_handles_labels())
+
+    alt = "A late spring pushes on after the middle; its torque runs round a loop over the angle."
+    return illustrate(draw, alt, 7.0, 2.2)
 
 
 def _exercise(number: int, inertia: float, friction: float, period: float) -> Exercise:

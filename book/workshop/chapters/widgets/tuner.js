@@ -111,10 +111,17 @@ extras.push((view) => {
   const legend = make("div", { class: "legend" });
   legend.append(key("now", "now"), key("ghost", "your previous setting"), key("wanted", "wanted"));
   const row = make("div", { class: "time" }, clock.play, clock.el);
-  const errors = make("div", { class: "charts errors" }, ...view.charts.slice(0, 2).map((c) => c.el));
-  const more = make("div", { class: "controls more" }, ...view.controls.querySelectorAll(".switch, .menu"));
-  const told = make("div", { class: "told-so" }, verdict, remedy, pointer);
-  view.top.append(errors, more, make("div", { class: "scene" }, stage.svg, legend, row), told);
+  const scene = make("div", { class: "scene" }, stage.svg, legend, row);
+  const first = make("div", { class: "charts first" }, ...view.charts.slice(0, 2).map((c) => c.el), scene);
+  const told = make("div", { class: "told-so" }, verdict, pointer, remedy);
+  const switches = make("div", { class: "controls" }, ...view.controls.querySelectorAll(".switch, .menu"));
+  const names = spec.parameters.filter((p) => p.options && p.display !== "slider").map((p) => p.name);
+  const what = view.charts[2].panel.y_label.split(",")[0].replace(/^\w+ /, "");
+  const summary = make("summary", {}, `More: feedforward, load, friction, noise, a weak motor, and each ${what}`);
+  const more = make("details", { class: "more" }, summary, switches, el.querySelector(":scope > .charts"), ...el.querySelectorAll(":scope > .remark"));
+  const opened = () => (more.open ||= names.some((name) => view.get(name) !== view.parameter(name).value));
+  opened();
+  view.top.append(view.numbers, first, told, more);
 
   // A drag, however slow, has one setting before it.
   const grasp = () => (view.grip = "fresh");
@@ -184,7 +191,7 @@ extras.push((view) => {
   const outputs = [...view.numbers.querySelectorAll("output")];
   function numbered() {
     spec.scalars.forEach(({ name }, k) => {
-      if (outputs[k].textContent === "none") write(outputs[k], name.endsWith("RMS") ? "none, stopped" : "none, unstable");
+      if (outputs[k].textContent === "none" && name.endsWith("RMS")) write(outputs[k], "none, stopped");
     });
   }
 
@@ -192,6 +199,7 @@ extras.push((view) => {
     model.set("before", change[0]);
     view.keeps = true;
     view.set(change[1]);
+    opened();
     view.schedule();
     if (calm.matches) clock.stand(end);
     else clock.start(0);

@@ -168,7 +168,21 @@ _QUESTIONS = (
         "at the start nor friction.",
         {"kd": 60.0},
     ),
+    _question(
+        "the damper gets its velocity from a coarse encoder, as the difference of two readings",
+        {"kd": 97.5, "noise": True},
+        (
+            "The torque gets a little rougher.",
+            "The torque jumps by half of 100 N m, and the arm hardly notices.",
+            "The arm trembles by degrees.",
+        ),
+        1,
+        "A count is a small angle, but it comes within one period, so the damper sees a high "
+        "speed. The heavy arm smooths it out.",
+        {"kd": 97.5},
+    ),
 )
+_ASKED = {"error": (0, 1, 2, 3, 4, 5, 8), "torque": (9, 6, 7)}  # by what is shown first
 
 
 class PIDTuner(CurveWidget):
@@ -190,14 +204,15 @@ class PIDTuner(CurveWidget):
     before = t.Dict(help="the setting before this one, which the ghost has").tag(sync=True)
     loop = t.Dict(help="plant, modes, reference and questions", read_only=True).tag(sync=True)
 
-    def __init__(self):
+    def __init__(self, first: str = "error", kd: float = 0.0):
+        """Charts of the errors or of the torques stand `first`, with the questions about them."""
         milliseconds = {n: f"{1e3 * CONTROL_STEP * n:g} ms" for n in _LATE}
         super().__init__(
             self._both,
             [
                 Parameter("kp", "Proportional gain", 50, 12000, KP[0], "N m/rad", scale="log"),
                 Parameter("ki", "Integral gain", 0, 4000, 0, "N m/(rad s)"),
-                Parameter("kd", "Derivative gain", 0, 150, 0, "N m s/rad"),
+                Parameter("kd", "Derivative gain", 0, 150, kd, "N m s/rad"),
                 Choice("late", "The torque comes late by", milliseconds, 0, "slider"),
                 *(
                     Choice(name, label, {False: "off", True: "on"}, False, "switch")
@@ -228,14 +243,17 @@ class PIDTuner(CurveWidget):
                     y_fit=True,
                     roles={"now": joint},
                 )
-                for what, unit in (("error", "°"), ("torque", "N m"))
+                for what, unit in sorted(
+                    (("error", "°"), ("torque", "N m")), key=lambda kind: kind[0] != first
+                )
                 for joint in JOINTS
             ],
             live=Live(examples=[{"kd": 60.0}, {"kp": 50.0}]),
             title="PID tuner",
             alt=(
                 "Tracking error and torque of both joints over trajectory 6 with the springs and "
-                "the friction of the book's arm, without damper, integral or feedforward."
+                f"the friction of the book's arm, {'a' if kd else 'no'} damper, no integral and no "
+                "feedforward."
             ),
             scalars=[
                 *(Scalar(f"{j} RMS", f"{j.title()} error, RMS", "°", 2) for j in JOINTS),
@@ -262,7 +280,7 @@ class PIDTuner(CurveWidget):
             "periods": len(_T),
             "every": round(LOG_STEP / CONTROL_STEP),
             "most": np.deg2rad(_MOST_DEG),
-            "questions": list(_QUESTIONS),
+            "questions": [_QUESTIONS[k] for k in _ASKED[first]],
         }
         self._keep(before=self.values, loop=loop)
 
