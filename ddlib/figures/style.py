@@ -268,13 +268,12 @@ class Illustration:
                 self.figure.savefig(content, dpi=dpi, **options)
             write_whole(path, content.getvalue())
             return
-        svg = fixed(self.svg)
-        svg = svg.replace(' style="', ' style="background:#ffffff;', 1)
-        write_whole(path, svg)
+        write_whole(path, fixed(self.svg))
 
 
 def fixed(svg: str) -> str:
-    """A figure's SVG in the colours of a light page, wherever it stands."""
+    """A figure's SVG in the colours of a light page, on white, wherever it stands."""
+    svg = svg.replace(' style="', ' style="background:#fff;', 1)
     return _ROLE.sub(r"\1", svg.replace("currentColor", "#1a1a1a"))
 
 
