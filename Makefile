@@ -136,16 +136,17 @@ pages: $(TESTED)
 	  $(PYTEST) --last-failed --last-failed-no-failures none $(PAGE_TESTS); }
 
 SOURCES ?=
-# No question about news, notebooks above folders, widgets saved with the notebook.
-OURS = --LabApp.app_settings_dir=book/_ext/lab-settings
-LAB = $(WORKSHOP) -m jupyterlab $(OURS) $(if $(filter 0,$(shell id -u)),--allow-root)
+# No question about news, whole names in the list, widgets saved with the notebook.
+OURS = --LabApp.app_settings_dir=book/_ext/lab-settings \
+	$(if $(filter 0,$(shell id -u)),--allow-root)
 lab: $(READY)  ## JupyterLab on the readers' notebooks; SOURCES=1: on the book's own
 ifeq ($(SOURCES),)
 	@$(BIN)/python book/_ext/build.py
-	@$(BIN)/python book/_ext/lab.py
-	$(LAB) --ServerApp.root_dir=_build/lab --LabApp.default_url=/lab/tree/00-index.ipynb
+	@$(WORKSHOP) book/_ext/lab.py $(OURS) --ServerApp.root_dir=_build/lab \
+	  --FileContentsManager.pre_save_hook=lab.keep_widgets \
+	  --LabApp.default_url=/lab/tree/00-index.ipynb
 else
-	$(LAB) --LabApp.default_url=/lab/tree/book
+	$(WORKSHOP) -m jupyterlab $(OURS) --LabApp.default_url=/lab/tree/book
 endif
 
 LESSON ?=

@@ -27,6 +27,7 @@ from dd_failures import HYPHEN
 from dd_public import address, repository
 from dd_quiz import with_questions
 from jupyter_cache import get_cache
+from lab import VIEW, states
 from lessons import CHANGE_THIS, FOLDED, Lesson, contents, handed_out, lesson, lessons
 from pybtex.database import parse_file
 from rewriter import tag
@@ -63,8 +64,6 @@ EQUATION = re.compile(r"(?ms)^\$\$\n(.*?)\n\$\$[ \t]*\(([\w-]+)\)[ \t]*$")
 DIRECTIVE = re.compile(r"(?ms)^(`{3,}|:{3,})\{(\w[\w-]*)\}([^\n]*)\n(.*?)^\1[ \t]*$")
 ANCHOR = re.compile(r"(?m)^\([\w-]+\)=\n")
 GLUED = "application/papermill.record/text/plain"
-VIEW = "application/vnd.jupyter.widget-view+json"
-STATE = "application/vnd.jupyter.widget-state+json"
 SVG = re.compile(r'(?s)<svg.*?aria-label="([^"]*)".*?</svg>')  # the wide form of a figure
 
 
@@ -216,6 +215,8 @@ def taken(output, models: dict):
     data = output.get("data")
     if data is None:  # something printed
         return output
+    if "execution_count" in output:
+        output.execution_count = None
     forms = {kind: text for kind, text in data.items() if kind != GLUED}
     markup = forms.get("text/html", "")
     if VIEW in forms:  # the picture is for where no widget is shown
@@ -237,8 +238,7 @@ def taken(output, models: dict):
 def reader_notebook(of: Lesson, known: Known, executed):
     """A notebook of the book as a reader's, with outputs of the executed one: see the module."""
     plain, cells = Plain(of.page, known, values(executed)), []
-    state = executed.metadata.get("widgets", {}).get(STATE, {}).get("state", {})
-    models = {name: model["state"] for name, model in state.items()}
+    models = {name: model["state"] for name, model in states(executed).items()}
     for cell, ran in zip(of.notebook.cells, executed.cells):
         if cell.cell_type != "code":
             text = plain.text(with_questions(cell.source, of))
