@@ -53,7 +53,11 @@ if importlib.util.find_spec("workshop") is None:
     sys.path[:0] = [os.path.abspath("the-book/book"), os.path.abspath("the-book")]
     os.chdir("the-book/{folder}")
     if "google.colab" in sys.modules:
-        sys.modules["google.colab"].output.enable_custom_widget_manager()"""
+        sys.modules["google.colab"].output.enable_custom_widget_manager()
+
+from workshop.errors import short_errors
+
+short_errors()"""
 QUOTED = re.compile(r"(?m)^quoted\(.*\)$")  # the numbers stand in the text already
 MARK = ('<abbr title="the book\'s number">', "</abbr>")  # around a number in the text
 ARCHIVE = "notebooks.zip"  # beside the first page

@@ -272,8 +272,9 @@ class Illustration:
 
 
 def fixed(svg: str) -> str:
-    """A figure's SVG in the colours of a light page, on white, wherever it stands."""
-    svg = svg.replace(' style="', ' style="background:#fff;', 1)
+    """A figure's SVG at its size, in the colours of a light page, on white, wherever it stands."""
+    svg = _WIDTH.sub(r' width="\1"\g<0>', svg, count=1)
+    svg = svg.replace(' style="', ' style="background:#ffffff;', 1)
     return _ROLE.sub(r"\1", svg.replace("currentColor", "#1a1a1a"))
 
 
@@ -536,6 +537,9 @@ def _inline(svg: str, alt: str) -> str:
 _XLINK = "http://www.w3.org/1999/xlink"
 _LINK = re.compile(r"(?:^|(?<=url\())#([^)\s]+)")  # in an attribute: to a part of the picture
 _ROLE = re.compile(r"var\(--dd-\w+, (#\w+)\)")  # a colour that follows the page
+_WIDTH = re.compile(
+    r' style="width:([\d.]+in);'
+)  # of the whole, which an image takes no style from
 _SIZE = re.compile(r"(?<=font-size: )[\d.]+(?=px)|(?<=font: )[\d.]+(?=px)")
 # A line of no length, which is a dot if its ends are round
 _DOT = re.compile(r"M (\S+) (\S+)\s+L \1 \2\s*(?=M|$)")
