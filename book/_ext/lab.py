@@ -46,9 +46,8 @@ def lay_out(made: Path, lab: Path) -> list[str]:
     return kept
 
 
-def trust(made: Path) -> None:
+def trust(made: Path, notary: NotebookNotary) -> None:
     """Sign notebooks, wherever they are copied to."""
-    notary = NotebookNotary()
     for path in made.rglob("*.ipynb"):
         notary.sign(nbformat.read(path, as_version=4))
 
@@ -83,5 +82,5 @@ def keep_widgets(model: dict, path: str, contents_manager, **_) -> None:
 if __name__ == "__main__":
     for name in lay_out(MADE, LAB):
         print(f"==> Left as you changed it: {(LAB / name).relative_to(ROOT)}")
-    trust(MADE)
+    trust(MADE, NotebookNotary())
     LabApp.launch_instance(sys.argv[1:])
