@@ -200,4 +200,4 @@ def test_pictures_and_widgets_are_there_before_anything_runs(parsed):
         figures = sum("text/html" in each and VIEW not in each for each in data)
         page = path.relative_to(HTML / "_sources").with_name(re.sub(r"^\d\d-", "", path.stem))
         assert figures == len(parsed(page.as_posix()).select(".ddlib-figure")), path
-        assert path.stat().st_size < 1.5e6
+        assert path.stat().st_size < 2e6
