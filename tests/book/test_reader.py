@@ -2,6 +2,8 @@
 
 import json
 import re
+import subprocess
+import sys
 from types import MappingProxyType, SimpleNamespace
 
 import nbformat
@@ -108,6 +110,23 @@ def test_outputs_are_taken_as_any_viewer_shows_them():
     assert shown["widget"]["text/html"] == '<img src="data:," alt="An arm">'
     assert "still" not in states(made)["m"]["state"]
     nbformat.validate(made)
+
+
+def test_an_error_of_a_check_is_the_readers_lines_and_the_message():
+    """Others are shown whole."""
+
+    def told(code):
+        start = "from workshop.errors import short_errors; short_errors()\n"
+        start += "from ddlib.dynamics import CMU_DD_ARM_II as arm\n"
+        ipython = [sys.executable, "-m", "IPython", "--no-banner", "--colors=NoColor"]
+        made = subprocess.run([*ipython, "-c", start + code], capture_output=True, text=True)
+        return [line for line in made.stdout.splitlines() if line]
+
+    *_, where, line, message = told("def mine(q):\n    return arm.mass_matrix(q)\nmine([0])")
+    assert "in mine" in where and line.strip() == "return arm.mass_matrix(q)"
+    assert message == "ValueError: q must have a last axis of length 2, got shape (1,)"
+    assert len(told("arm.mass_matrix([0])")) == 4
+    assert any("numpy" in line for line in told("import numpy as np\nnp.linalg.inv([[0]])"))
 
 
 def test_a_script_has_the_open_cells_below_their_headings(capsys):
