@@ -12,7 +12,6 @@ import sys
 from pathlib import Path
 
 import nbformat
-from jupyterlab.labapp import LabApp
 from nbformat.sign import NotebookNotary
 
 ROOT = Path(__file__).parents[2]
@@ -80,6 +79,8 @@ def keep_widgets(model: dict, path: str, contents_manager, **_) -> None:
 
 
 if __name__ == "__main__":
+    from jupyterlab.labapp import LabApp  # here: the book's build needs the rest
+
     for name in lay_out(MADE, LAB):
         print(f"==> Left as you changed it: {(LAB / name).relative_to(ROOT)}")
     trust(MADE, NotebookNotary())
