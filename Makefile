@@ -142,16 +142,17 @@ pages: $(TESTED)
 	  $(PYTEST) --last-failed --last-failed-no-failures none $(PAGE_TESTS); }
 
 SOURCES ?=
-# No news and no look for updates of JupyterLab's own: it starts on the notebooks, and asks nobody.
-QUIET = --LabApp.news_url=None --LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate
-LAB = $(WORKSHOP) -m jupyterlab $(QUIET) $(if $(filter 0,$(shell id -u)),--allow-root)
+# No question about news, whole names in the list, widgets saved with the notebook.
+OURS = --LabApp.app_settings_dir=book/_ext/lab-settings \
+	$(if $(filter 0,$(shell id -u)),--allow-root)
 lab: $(READY)  ## JupyterLab on the readers' notebooks; SOURCES=1: on the book's own
 ifeq ($(SOURCES),)
 	@$(BIN)/python book/_ext/build.py
-	@$(BIN)/python book/_ext/lab.py
-	$(LAB) --ServerApp.root_dir=_build/lab --LabApp.default_url=/lab/tree/index.ipynb
+	@$(WORKSHOP) book/_ext/lab.py $(OURS) --ServerApp.root_dir=_build/lab \
+	  --FileContentsManager.pre_save_hook=lab.keep_widgets \
+	  --LabApp.default_url=/lab/tree/00-index.ipynb
 else
-	$(LAB) --LabApp.default_url=/lab/tree/book
+	$(WORKSHOP) -m jupyterlab $(OURS) --LabApp.default_url=/lab/tree/book
 endif
 
 LESSON ?=

@@ -15,7 +15,7 @@ from pathlib import Path
 import nbformat
 import yaml
 from dd_reader import MARK, NOTE
-from lessons import chapters, parts, with_below
+from lessons import chapters, handed_out, parts, with_below
 
 # What is written, below the root of the site
 CLAIMS, TEXTS, MAP = "claims.json", "text", "llms.txt"
@@ -36,7 +36,7 @@ from the run that made these pages.
 ## Start
 
 - [Claims]({claims}): all verdicts as JSON
-- [The first page]({texts}/index.md): two rows of weights, and an arm to throw
+- [The first page]({texts}/00-index.md): two rows of weights, and an arm to throw
 """
 
 
@@ -128,8 +128,9 @@ def write(app, exception):
     texts = {}  # by page: title and first words, and the address of its text
     for path in (root / "book" / "index.ipynb", *chapters(root)):
         name = path.relative_to(root).with_suffix("")
-        readers = out / "_sources" / name.with_suffix(".ipynb")
-        target = out / TEXTS / name.relative_to("book").with_suffix(".md")
+        named = handed_out(app.env, name.as_posix())
+        readers = out / "_sources" / f"{named}.ipynb"
+        target = out / TEXTS / f"{named.removeprefix('book/')}.md"
         target.parent.mkdir(parents=True, exist_ok=True)
         text = plain(nbformat.read(readers, as_version=4))
         target.write_text(text, encoding="utf-8")

@@ -53,8 +53,8 @@ def site(name: str) -> str:
     return os.environ.get("DDLIB_SITE", usual).rstrip("/") + "/"
 
 
-def links(name: str, page: str, source: str, lesson: bool) -> list[tuple[str, str, str]]:
-    """Icon, text and address of a page's buttons."""
+def links(name: str, page: str, source: str, notebook: str = "") -> list[tuple[str, str, str]]:
+    """Icon, text and address of a page's buttons; Colab's only for a notebook that it opens."""
     about = quote(f"A mistake on the page {page}")
     asked = quote("What does the page say, and what should it say?\n\n\nWhere (heading, figure):\n")
     issue = f"{address(name)}/issues/new?title={about}&body={asked}"
@@ -62,8 +62,7 @@ def links(name: str, page: str, source: str, lesson: bool) -> list[tuple[str, st
         ("fas fa-flag", "Report a mistake", issue),
         ("fas fa-pencil-alt", "Suggest an edit", f"{address(name)}/edit/main/{source}"),
     ]
-    if lesson:
-        notebook = f"{page.removeprefix('book/')}.ipynb"
+    if notebook:
         to = f"{COLAB}/{name}/blob/{HANDED_OUT}/{notebook}"
         found.append(("fas fa-play", "Run in Colab", to))
     return found
@@ -71,15 +70,16 @@ def links(name: str, page: str, source: str, lesson: bool) -> list[tuple[str, st
 
 def offer(app, page, template, context, doctree):
     """The buttons, beside those of the theme."""
-    source = context.get("sourcename", "").removesuffix(".txt")
-    if doctree is None or "header_buttons" not in context or not source:
+    handed_out = context.get("sourcename", "")
+    if doctree is None or "header_buttons" not in context or not handed_out:
         return
     has_notebook = lesson(Path(app.srcdir), page) is not None and page != app.config.root_doc
+    notebook = handed_out.removeprefix("book/") if has_notebook else ""
     source = Path(app.env.doc2path(page)).relative_to(app.srcdir).as_posix()
     buttons = [
         {"type": "link", "url": url, "text": text, "icon": icon, "tooltip": text,
          "label": f"{text.lower().replace(' ', '-')}-button"}
-        for icon, text, url in links(repository(), page, source, has_notebook)
+        for icon, text, url in links(repository(), page, source, notebook)
     ]  # fmt: skip
     context["header_buttons"].append(
         {"type": "group", "tooltip": "Report, edit, run elsewhere", "icon": "fas fa-comment-dots",

@@ -1,35 +1,44 @@
 """The reader's notebooks: each executed notebook as a plain one that JupyterLab shows as it is.
 
 Numbers stand in the text, marked as the book's; links lead to other notebooks; figures have their
-captions below. Bookkeeping is folded, solutions are folded and not run. They take the place of the
-sources behind the download button, in Colab and in one archive of all; `make lab` opens them. Taken
-elsewhere, the first cell fetches the book and what it lacks. Of a lesson the open cells can be had
-as a script, too.
+captions below. Pictures, tables and widgets are there before anything runs. Bookkeeping is folded,
+solutions are folded and not run. Names begin with the number of the lesson, so that lists are in
+the order of the contents. They take the place of the sources behind the download button, in Colab
+and in one archive of all; `make lab` opens them. Taken elsewhere, the first cell fetches the book
+and what it lacks. Of a lesson the open cells can be had as a script, too.
 """
 
 from __future__ import annotations
 
 import ast
 import codecs
-import json
 import posixpath
 import re
 import textwrap
 import zipfile
+from contextlib import suppress
+from html import unescape
 from pathlib import Path
+from urllib.parse import quote
 
 import latexcodec  # noqa: F401  (it knows TeX's letters: "ulatex")
 import nbformat
 from dd_failures import HYPHEN
 from dd_public import address, repository
 from dd_quiz import with_questions
-from lessons import CHANGE_THIS, FOLDED, Lesson, contents, lesson, lessons
+from jupyter_cache import get_cache
+from lab import VIEW, states
+from lessons import CHANGE_THIS, FOLDED, Lesson, contents, handed_out, lesson, lessons
 from pybtex.database import parse_file
+from rewriter import tag
+
+from ddlib.figures.style import fixed
 
 NOTE = (
     "> **Your copy of a notebook of the book.** Numbers with a dotted line below them are the "
-    "book's, from the run that made its pages: they stay when you change code. Run all cells to "
-    "see figures and widgets; code that only keeps the book's numbers is folded."
+    "book's, from the run that made its pages: they stay when you change code. Figures, tables and "
+    "widgets are the book's, too, until you run their cells. JupyterLab's *Settings > Save Widget "
+    "State Automatically* keeps yours when you save. Code that only keeps numbers is folded."
 )
 SETUP = """# @title Where the book is not installed (in Colab, say), this fetches it: a minute, once
 import importlib.util, os, subprocess, sys
@@ -44,7 +53,11 @@ if importlib.util.find_spec("workshop") is None:
     sys.path[:0] = [os.path.abspath("the-book/book"), os.path.abspath("the-book")]
     os.chdir("the-book/{folder}")
     if "google.colab" in sys.modules:
-        sys.modules["google.colab"].output.enable_custom_widget_manager()"""
+        sys.modules["google.colab"].output.enable_custom_widget_manager()
+
+from workshop.errors import short_errors
+
+short_errors()"""
 QUOTED = re.compile(r"(?m)^quoted\(.*\)$")  # the numbers stand in the text already
 MARK = ('<abbr title="the book\'s number">', "</abbr>")  # around a number in the text
 ARCHIVE = "notebooks.zip"  # beside the first page
@@ -54,6 +67,8 @@ TARGET = re.compile(r"(?s)(.*?)\s*<([^<>]+)>")
 EQUATION = re.compile(r"(?ms)^\$\$\n(.*?)\n\$\$[ \t]*\(([\w-]+)\)[ \t]*$")
 DIRECTIVE = re.compile(r"(?ms)^(`{3,}|:{3,})\{(\w[\w-]*)\}([^\n]*)\n(.*?)^\1[ \t]*$")
 ANCHOR = re.compile(r"(?m)^\([\w-]+\)=\n")
+GLUED = "application/papermill.record/text/plain"
+SVG = re.compile(r'(?s)<svg.*?aria-label="([^"]*)".*?</svg>')  # the wide form of a figure
 
 
 class Known:
@@ -67,6 +82,10 @@ class Known:
         }  # fmt: skip
         self.equations = env.get_domain("math").equations
         self.books = parse_file(str(self.root / "book" / "references.bib")).entries
+
+    def name(self, page: str) -> str:
+        """Of its notebook, without ending."""
+        return handed_out(self.env, page)
 
     def number(self, kind: str, page: str, name: str) -> str:
         """Number of a figure or an equation, like "10.2"."""
@@ -93,14 +112,11 @@ class Known:
         return authors or entry.fields.get("title", key), entry.fields.get("year", "")
 
 
-def values(folder: Path, page: str) -> dict[str, object]:
-    """What a notebook glued, by its key, from where myst-nb keeps it."""
-    path = folder / f"{page}.glue.json"
-    if not path.is_file():
-        return {}
-    kept = json.loads(path.read_text(encoding="utf-8"))
-    texts = {key: "".join(output["data"].get("text/plain", "?")) for key, output in kept.items()}
-    return {key: _value(text) for key, text in texts.items()}
+def values(executed) -> dict[str, object]:
+    """What an executed notebook glued, by its key."""
+    outputs = (output for cell in executed.cells for output in cell.get("outputs", ()))
+    glued = (output for output in outputs if "scrapbook" in output.get("metadata", {}))
+    return {o.metadata.scrapbook.name: _value(o.data.get(GLUED, "?")) for o in glued}
 
 
 def _value(text: str):
@@ -124,7 +140,8 @@ class Plain:
         """A link to a page's notebook, from this one's; its title alone if it has none."""
         if not (self.known.root / f"{page}.ipynb").is_file():
             return f"*{title}*"
-        return f"[{title}]({posixpath.relpath(page, posixpath.dirname(self.page))}.ipynb)"
+        path = posixpath.relpath(self.known.name(page), posixpath.dirname(self.page))
+        return f"[{title}]({path}.ipynb)"
 
     def text(self, source: str) -> str:
         """A cell's markdown."""
@@ -192,10 +209,41 @@ def _keys(target: str) -> list[str]:
     return [key.strip() for key in target.split(",")]
 
 
-def reader_notebook(of: Lesson, known: Known, glued: dict):
-    """A notebook of the book as a reader's: see the module."""
-    plain, cells = Plain(of.page, known, glued), []
-    for cell in of.notebook.cells:
+def image(address: str, alt: str) -> dict[str, str]:
+    """A picture as any viewer shows it: of markup they do not trust, they keep images, no SVG."""
+    return {"text/html": tag("img", {"src": address, "alt": alt})}
+
+
+def taken(output, models: dict):
+    """An output of the book's for a reader's notebook; None of what only keeps a number."""
+    data = output.get("data")
+    if data is None:  # something printed
+        return output
+    if "execution_count" in output:
+        output.execution_count = None
+    forms = {kind: text for kind, text in data.items() if kind != GLUED}
+    markup = forms.get("text/html", "")
+    if VIEW in forms:  # the picture is for where no widget is shown
+        model = models[forms[VIEW]["model_id"]]
+        forms = {VIEW: forms[VIEW]}
+        if "still" in model:
+            forms |= image(model["still"], model["still_alt"])
+    elif "ddlib-figure" in markup:
+        drawn = SVG.search(markup)
+        svg = quote(fixed(drawn[0]), safe=" /:;=,()")
+        forms = image(f"data:image/svg+xml,{svg}", unescape(drawn[1]))
+    elif markup:  # an exercise that waits: its words are for the page
+        del forms["text/html"]
+    elif len(forms) > 1:
+        del forms["text/plain"]
+    return nbformat.from_dict({**output, "data": forms}) if forms else None
+
+
+def reader_notebook(of: Lesson, known: Known, executed):
+    """A notebook of the book as a reader's, with outputs of the executed one: see the module."""
+    plain, cells = Plain(of.page, known, values(executed)), []
+    models = {name: model["state"] for name, model in states(executed).items()}
+    for cell, ran in zip(of.notebook.cells, executed.cells):
         if cell.cell_type != "code":
             text = plain.text(with_questions(cell.source, of))
             cells.append(nbformat.v4.new_markdown_cell(text))
@@ -204,7 +252,10 @@ def reader_notebook(of: Lesson, known: Known, glued: dict):
         if "hide-cell" in tags:
             cells.append(nbformat.v4.new_markdown_cell(_solution(cell.source)))
             continue
-        made = nbformat.v4.new_code_cell(QUOTED.sub("", cell.source).rstrip())
+        outputs = [] if "remove-cell" in tags else [taken(o, models) for o in ran.outputs]
+        made = nbformat.v4.new_code_cell(
+            QUOTED.sub("", cell.source).rstrip(), outputs=[*filter(None, outputs)]
+        )
         if set(FOLDED) & set(tags):
             made.metadata["jupyter"] = {"source_hidden": True}
         cells.append(made)
@@ -217,7 +268,9 @@ def reader_notebook(of: Lesson, known: Known, glued: dict):
     )
     setup.metadata = {"jupyter": {"source_hidden": True}, "cellView": "form"}
     cells[1:1] = [nbformat.v4.new_markdown_cell(NOTE), setup]
-    made = nbformat.v4.new_notebook(cells=cells, metadata=of.notebook.metadata)
+    for model in models.values():
+        model.pop("still", None)
+    made = nbformat.v4.new_notebook(cells=cells, metadata=executed.metadata)
     for number, cell in enumerate(made.cells):  # the same text at every build
         cell["id"] = f"cell-{number}"
     return made
@@ -268,6 +321,12 @@ def has_script(notebook) -> bool:
     return any(CHANGE_THIS in cell.metadata.get("tags", []) for cell in notebook.cells)
 
 
+def rename(app, page, template, context, doctree):
+    """What the theme's button hands out, before the theme makes it."""
+    if lesson(Path(app.srcdir), page) is not None:
+        context["sourcename"] = f"{handed_out(app.env, page)}.ipynb"
+
+
 def offer_script(app, page, template, context, doctree):
     """A button for it beside that for the notebook, once the theme has made its own."""
     of = lesson(Path(app.srcdir), page)
@@ -275,7 +334,7 @@ def offer_script(app, page, template, context, doctree):
         return
     button = {
         "type": "link",
-        "url": f"{context['pathto']('_sources', 1)}/{page}.py",
+        "url": f"{context['pathto']('_sources', 1)}/{handed_out(app.env, page)}.py",
         "text": ".py",
         "icon": "fas fa-file-code",
         "tooltip": "Download the code that stands open, as a script",
@@ -291,11 +350,14 @@ def write(app, exception):
     if exception is not None or app.builder.format != "html" or app.config.only_page:
         return
     known = Known(app.env)
-    glued_in = Path(app.outdir).parent / "jupyter_execute"
+    cache = get_cache(app.config.nb_execution_cache_path)
     first = lesson(known.root, contents(known.root).root.docname)
     for of in (first, *lessons(known.root)):
-        made = reader_notebook(of, known, values(glued_in, of.page))
-        target = Path(app.outdir, "_sources", f"{of.page}.ipynb")
+        executed = of.notebook
+        with suppress(KeyError):  # what failed has no outputs
+            _, executed = cache.merge_match_into_notebook(of.notebook)
+        made = reader_notebook(of, known, executed)
+        target = Path(app.outdir, "_sources", f"{known.name(of.page)}.ipynb")
         target.parent.mkdir(parents=True, exist_ok=True)
         nbformat.write(made, target)
         if has_script(of.notebook):
@@ -315,6 +377,7 @@ def pack(site: Path, data: Path) -> None:
 
 
 def setup(app):
+    app.connect("html-page-context", rename, priority=400)
     app.connect("html-page-context", offer_script, priority=502)
     app.connect("build-finished", write)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

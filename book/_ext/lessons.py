@@ -9,6 +9,7 @@ begins with ``**2. Its title** (a derivation).``
 from __future__ import annotations
 
 import math
+import posixpath
 import re
 from functools import cache, cached_property
 from hashlib import sha1
@@ -136,6 +137,17 @@ def lessons(root: Path) -> list[Lesson]:
     """All notebooks in the order of the contents, after the first page's."""
     _, *pages = contents(root)
     return [found for page in pages if (found := lesson(root, page))]
+
+
+def handed_out(env, page: str) -> str:
+    """Where a page's notebook is handed out, without ending: "book/evidence/02-feedback".
+
+    Its number is that of the lesson it is or belongs to, of the first page 00; the back matter has
+    none, and stands behind the numbers in a list.
+    """
+    folder, name = posixpath.split(page)
+    number = env.toc_secnumbers.get(page, {}).get("") or (0,) * (page == env.config.root_doc)
+    return posixpath.join(folder, f"{number[0]:02}-{name}" if number else name)
 
 
 def chapters(root: Path) -> list[Path]:

@@ -268,13 +268,13 @@ class Illustration:
                 self.figure.savefig(content, dpi=dpi, **options)
             write_whole(path, content.getvalue())
             return
-        svg = fixed(self.svg)
-        svg = svg.replace(' style="', ' style="background:#ffffff;', 1)
-        write_whole(path, svg)
+        write_whole(path, fixed(self.svg))
 
 
 def fixed(svg: str) -> str:
-    """A figure's SVG in the colours of a light page, wherever it stands."""
+    """A figure's SVG at its size, in the colours of a light page, on white, wherever it stands."""
+    svg = _WIDTH.sub(r' width="\1"\g<0>', svg, count=1)
+    svg = svg.replace(' style="', ' style="background:#ffffff;', 1)
     return _ROLE.sub(r"\1", svg.replace("currentColor", "#1a1a1a"))
 
 
@@ -504,10 +504,11 @@ def _inline(svg: str, alt: str) -> str:
     elements = list(root.iter())
     values = [value for element in elements for value in element.attrib.values()]
     named = {element.get("id") for element in elements}
-    used = named.intersection(name for value in values for name in _LINK.findall(value))
+    links = dict.fromkeys(name for value in values for name in _LINK.findall(value))
+    used = {name: f"{prefix}-{k}" for k, name in enumerate(links) if name in named}
 
     def own(link: re.Match) -> str:
-        return f"#{prefix}-{link[1]}" if link[1] in used else link[0]
+        return f"#{used[link[1]]}" if link[1] in used else link[0]
 
     sizes = []
     for element in elements:
@@ -516,13 +517,21 @@ def _inline(svg: str, alt: str) -> str:
             for role, (light, _) in ROLES.items():
                 new = new.replace(light, f"var(--dd-{role}, {light})")
             if name == "id":
-                new = f"{prefix}-{value}" if value in used else None
-            elif name in ("d", "x", "y", "transform"):
+                new = used.get(value)
+            elif name == "d":
+                new = _GAP.sub(r"\1", _rounded(new))
+            elif name in ("x", "y", "transform"):
                 new = None if value.startswith("rotate(-0 ") else _rounded(new)
             elif name == "style":
                 new = new.replace("; font-family: 'DejaVu Sans'", "")  # said once, on the whole
                 new = _SIZE.sub(lambda size: _legible_size(size, sizes), new)
             element.set(name, new) if new is not None else element.attrib.pop(name)
+    for group in root.iter("g"):  # the marks of a curve have one style, said once
+        styles = {(mark.tag, mark.get("style", "")) for mark in group}
+        if len(group) > 1 and len(styles) == 1 and group[0].tag == "use":
+            group.set("style", group[0].get("style", ""))
+            for mark in group:
+                mark.attrib.pop("style", None)
     width = float(root.attrib.pop("width").removesuffix("pt"))
     del root.attrib["height"]
     least = f"--least:{width / min(sizes) * 9:.0f}px;" if sizes else ""
@@ -537,6 +546,8 @@ def _inline(svg: str, alt: str) -> str:
 _XLINK = "http://www.w3.org/1999/xlink"
 _LINK = re.compile(r"(?:^|(?<=url\())#([^)\s]+)")  # in an attribute: to a part of the picture
 _ROLE = re.compile(r"var\(--dd-\w+, (#\w+)\)")  # a colour that follows the page
+_WIDTH = re.compile(r' style="width:([\d.]+in);')  # of the whole; an image needs it apart
+_GAP = re.compile(r"\s*([A-Za-z])\s*")  # around a letter of a path
 _SIZE = re.compile(r"(?<=font-size: )[\d.]+(?=px)|(?<=font: )[\d.]+(?=px)")
 # A line of no length, which is a dot if its ends are round
 _DOT = re.compile(r"M (\S+) (\S+)\s+L \1 \2\s*(?=M|$)")

@@ -64,8 +64,7 @@ def still_picture(
 
 def encoded(svg: str) -> str:
     """A figure's SVG with fixed, light colours, in base64: what follows `START`."""
-    svg = fixed(svg).replace('style="', 'style="background:#fff;', 1)
-    return base64.b64encode(svg.encode()).decode()
+    return base64.b64encode(fixed(svg).encode()).decode()
 
 
 def _draw_panel(ax, panel: Panel, curves):

@@ -2,7 +2,8 @@
 
 Five of them have every kind of widget: one that is pulled, one with a recording behind it, and
 those of weights, filters and training. One is run whole, as a reader does; of the others the cells
-that their widgets need, since every notebook is executed elsewhere, too.
+that their widgets need, since every notebook is executed elsewhere, too. A handed-out notebook is
+looked at, run in part, saved and opened again.
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ from pathlib import Path
 
 import pytest
 from book_pages import ROOT, code_cells, source
+from lab import MADE, trust
+from nbformat.sign import NotebookNotary
 from needed import needed
 from reactions import SLIDER, Handle, handles
 
@@ -53,10 +56,14 @@ def lab(tmp_path_factory):
         f"--IdentityProvider.token={TOKEN}",
         "--LabApp.expose_app_in_browser=True",
         "--LabApp.extension_manager=readonly",
-        "--LabApp.news_url=None",
-        "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate",
+        f"--LabApp.app_settings_dir={ROOT / 'book' / '_ext' / 'lab-settings'}",
+        "--FileContentsManager.pre_save_hook=lab.keep_widgets",
         *(["--allow-root"] if os.geteuid() == 0 else []),
     ]
+    if MADE.is_dir():
+        shutil.copytree(MADE, home / "handed-out")
+        (home / "data").mkdir()
+        trust(MADE, NotebookNotary(data_dir=str(home / "data")))
     log = home / "log.txt"
     with log.open("w") as output:
         server = subprocess.Popen(
@@ -64,7 +71,7 @@ def lab(tmp_path_factory):
             env={
                 **os.environ,
                 "OMP_NUM_THREADS": "1",
-                "PYTHONPATH": str(home / "book"),
+                "PYTHONPATH": os.pathsep.join((str(home / "book"), str(ROOT / "book" / "_ext"))),
                 **{name: str(home / folder) for name, folder in folders.items()},
             },
             stdout=output,
@@ -109,6 +116,12 @@ def wait(page, what: str, condition, seconds: float):
         assert time.monotonic() < end, f"still waiting for {what}"
         page.wait_for_timeout(100)
     return value
+
+
+def show(page, path: str):
+    """Open a notebook."""
+    page.evaluate("(path) => lab.show(path)", path)
+    wait(page, "the notebook", lambda: page.evaluate("Boolean(window.panel)"), STARTING)
 
 
 def values(page, model: str) -> dict:
@@ -231,8 +244,7 @@ def opened(lab, browser):
 def test_widgets_of_a_chapter_live_in_the_lab(name, lab, opened):
     """With a kernel, and when it is gone."""
     page = opened
-    page.evaluate("(path) => lab.show(path)", source(name).relative_to(ROOT).as_posix())
-    wait(page, "the notebook", lambda: page.evaluate("Boolean(window.panel)"), STARTING)
+    show(page, source(name).relative_to(ROOT).as_posix())
     run(page, None if name == WHOLE else needed(code_cells(source(name))))
     models = page.evaluate("lab.shown()")
     roots = page.locator(".jp-OutputArea-output .ddlib-widget")
@@ -247,3 +259,31 @@ def test_widgets_of_a_chapter_live_in_the_lab(name, lab, opened):
     request(f"{lab}api/kernels/{kernel}", "DELETE")
     for handle, (_, alone) in zip(firsts, ways):
         alone(page, handle)
+
+
+@pytest.mark.built
+def test_a_handed_out_notebook_is_seen_before_it_runs_and_after_it_was_saved(built, opened):
+    page, path = opened, "handed-out/02-feedback.ipynb"
+    roots = page.locator(".jp-OutputArea-output .ddlib-widget")
+
+    def seen():
+        show(page, path)
+        shown = page.evaluate("lab.shown()")
+        wait(page, "the widgets", lambda: roots.count() == len(shown) > 1, ANSWER)
+        assert not page.get_by_text("Error displaying widget").count()
+        return page.locator(".jp-OutputArea-output img")
+
+    pictures = seen()
+    assert pictures.count() > 3
+    assert all(pictures.evaluate_all("(all) => all.map((one) => one.naturalWidth > 100)"))
+    handle = handles(roots.first)[0]
+    way_of(handle)[1](page, handle)
+    run(page, [2])  # the first widget; the second stays the book's
+    slider = roots.first.locator(SLIDER).first
+    slider.press("ArrowRight")
+    value = slider.input_value()
+    page.wait_for_timeout(500)  # until Python has it
+    page.evaluate("lab.save()")
+    page.evaluate("lab.close()")
+    seen()
+    assert roots.first.locator(SLIDER).first.input_value() == value

@@ -45,13 +45,15 @@ def test_the_site_of_a_repository(monkeypatch):
 
 
 def test_buttons_lead_where_the_address_says():
-    found = dd_public.links("someone/the-arm", "book/feedback", "book/feedback.ipynb", True)
+    found = dd_public.links(
+        "someone/the-arm", "book/feedback", "book/feedback.ipynb", "02-feedback.ipynb"
+    )
     report, edit, colab = (url for _, _, url in found)
     assert report.startswith("https://github.com/someone/the-arm/issues/new?title=")
     assert "book/feedback" in report and "\n" not in report and " " not in report
     assert edit == "https://github.com/someone/the-arm/edit/main/book/feedback.ipynb"
-    assert colab.endswith("/github/someone/the-arm/blob/notebooks/feedback.ipynb")
-    assert len(dd_public.links("someone/the-arm", "book/status", "book/status.md", False)) == 2
+    assert colab.endswith("/github/someone/the-arm/blob/notebooks/02-feedback.ipynb")
+    assert len(dd_public.links("someone/the-arm", "book/status", "book/status.md")) == 2
 
 
 def test_only_what_is_absent_is_installed():
@@ -97,7 +99,7 @@ def test_all_notebooks_come_in_one_archive(built):
     with zipfile.ZipFile(built / dd_reader.ARCHIVE) as archive:
         names = archive.namelist()
         assert archive.testzip() is None
-        notebook = nbformat.reads(archive.read("notebooks/feedback.ipynb"), as_version=4)
+        notebook = nbformat.reads(archive.read("notebooks/02-feedback.ipynb"), as_version=4)
     made = set()
     for path in (built / "_sources" / "book").rglob("*.ipynb"):
         made.add(f"notebooks/{path.relative_to(built / '_sources' / 'book').as_posix()}")

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -76,7 +77,7 @@ def main(python: str, names: list[str]) -> int:
         return 2
     archive, bad = zipfile.ZipFile(io.BytesIO((HTML / "notebooks.zip").read_bytes())), {}
     members = {
-        n.partition("/")[2].removesuffix(".ipynb"): n
+        re.sub(r"notebooks/|\d\d-|\.ipynb", "", n): n
         for n in archive.namelist()
         if n.endswith(".ipynb")
     }

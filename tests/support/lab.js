@@ -55,6 +55,8 @@ window.lab = {
     return text;
   },
 
+  save: () => window.panel.context.save(),
+
   // Without a question whether to keep what was changed. The session ends first: what still
   // listens to a closed panel would look for its kernel. And not before a kernel that starts is
   // at rest: what it is asked then would never be answered.
