@@ -146,7 +146,6 @@ def test_work_is_judged_and_kept_on_the_device_alone(browser, site, tmp_path):
     asked.value.set_files(tmp_path / "work.json")
     tab.locator(".live-own >> text=is here again").wait_for()
     assert "Solved: 1 of " in summary.inner_text()
-    tab.get_by_role("button", name="Stop").click()
     run(mine)  # in a Python that has run nothing: what it needs of the cells above runs first
     tab.locator(".live-output >> text=Right").wait_for(timeout=300_000)
     assert not wrong

@@ -92,26 +92,39 @@
     return cells.some((c) => c.area && c.area.value !== c.source);
   }
 
-  // --- the bar above the first cell ---
+  // --- one button in the page's header, and its state beside it ---
   cells.forEach((cell, place) => {
     cell.el = document.querySelector(`[data-live="${cell.id}"]`);
     Object.assign(cell, { place, shown: cell.source, turn: 0, last: 0, asBuilt: cell.names });
   });
-  const bar = make("section", { class: "live-bar", "aria-label": "Run this page" });
-  const status = make("p", { class: "live-status", role: "status" });
-  const progress = make("div", {
-    role: "progressbar",
-    class: "live-progress",
-    "aria-label": "Loading Python",
-    "aria-valuemin": 0,
-    "aria-valuemax": 100,
-    hidden: "",
-  });
-  progress.append(make("span"));
-  const begin = button("Run this page", "", () => start());
-  const follows = button("Run what follows", "Run what follows from your changes", () => followUp());
-  const all = button("Run all", "", () => enqueue(cells, true));
-  const stop = button("Stop", "Stop what runs", () => halt());
+  const status = make("span", { class: "live-status", role: "status" });
+  const press = button("Run this page", "", () => act());
+  press.title = `Change this page's code and run it: loads ${megabytes[0]} to ${megabytes[1]} MB from this site`;
+  document.querySelector(".article-header-buttons").prepend(status, press);
+  const say = (text) => {
+    if (status.textContent === text) return; // it is read out at each change
+    status.textContent = text;
+    status.classList.toggle("live-long", text.length > 40);
+  };
+  const calm = (text) => [text, blocked && "this browser keeps no changes"].filter(Boolean).join(": ");
+  // What the button does follows what there is to do.
+  let act = () => start();
+  let stale = 0; // cells that may be out of date
+  const isOn = () => "live" in document.documentElement.dataset;
+  function face() {
+    if (!isOn()) return;
+    const busy = running || waiting.size;
+    document.documentElement.dataset.live = busy ? "running" : "idle";
+    const [words, does, title] = busy
+      ? ["Stop", halt, "Stop what runs"]
+      : stale
+        ? ["Run what follows", followUp, "Run what follows from your changes"]
+        : ["Run all", () => enqueue(cells, true), "Run all cells of this page"];
+    act = does;
+    if (press.textContent !== words) press.textContent = words;
+    press.title = title;
+  }
+
   const reset = button("Reset", "Reset: code and output as in the book", () => asBuilt());
   const react = make("input", { type: "checkbox", role: "switch", id: "live-react" });
   react.checked = read(REACT) === true;
@@ -237,15 +250,6 @@
     heardOf.textContent = "Your work on all pages of this book was erased.";
   }
 
-  const lacks = cells.filter((c) => c.needs).map((c) => c.needs);
-  status.textContent =
-    `Change the code of this page and run it, here in the browser. A click loads Python from ` +
-    `this site: ${megabytes[0]} MB, up to ${megabytes[1]} MB with all that cells import. The first ` +
-    `run takes half a minute more than the page says.` +
-    (lacks.length ? ` PyTorch's ${lacks.join(", ")} are not in a page: the notebook has them.` : "") +
-    (Object.keys(mine.changes).length ? " What you changed last time comes back with it." : "");
-  bar.append(begin, status, progress);
-  if (asked.length) bar.append(own);
   tally();
   const other = Object.keys(mine.changes).filter(
     (id) => mine.changes[id][0] !== cells.find((c) => c.id === id)?.source,
@@ -255,14 +259,8 @@
     heardOf.textContent =
       `The book has changed the code of ${many(other, "cell")} since you did. Your code is not ` +
       "shown here; “Save as a file” has it.";
-  // Beside the sections of the page, not in one: so it stays in view down to the last cell.
-  let spot = cells[0].el;
-  while (spot.parentElement.parentElement.closest("section")) spot = spot.parentElement;
-  spot.before(bar);
-
-  const say = (text) => {
-    if (status.textContent !== text) status.textContent = text; // it is read out at each change
-  };
+  if (asked.length) (asked[0].el.parentElement.querySelector(":scope > .rubric") ?? asked[0].el).before(own);
+  if (blocked) say(calm(""));
 
   // --- cells ---
   const text = (cell) => cell.area?.value ?? cell.source;
@@ -362,17 +360,16 @@
     fit(cell);
   }
 
-  const toRun = (count) =>
-    `${many(count, "cell")} may show what came before your change: press “Run what follows”.`;
+  const upToDate = () => calm(stale ? `${many(stale, "cell")} may be out of date` : "ready");
 
   function changed(cell) {
     fit(cell);
     remember();
     if (blocked) heardOf.textContent = keptNothing;
-    const count = mark();
+    mark();
     clearTimeout(timer);
     if (react.checked) timer = setTimeout(followUp, 500);
-    else if (ready && !running) say(count ? toRun(count) : "All outputs are up to date.");
+    else if (ready && !running) say(upToDate());
   }
 
   // --- handles: the numbers of *Change this* ---
@@ -445,7 +442,7 @@
       if (cell.handles) only.set(cell.place, follow.renamed(cell.shown, text(cell)));
     const first = cells.filter((c) => different.includes(c) || (c.stale && !c.needs));
     const later = follow.after(cells, follow.graph(cells), first.map((c) => c.place), only);
-    let count = 0;
+    stale = 0;
     for (const cell of cells) {
       if (!cell.mark) continue;
       const behind = cell.stale || later.has(cell.place);
@@ -454,17 +451,16 @@
         : behind
           ? "May show what came before your change."
           : "";
-      count += behind || different.includes(cell);
+      stale += behind || different.includes(cell);
       if (cell.mark.textContent !== words) cell.mark.textContent = words;
       cell.el.classList.toggle("live-stale", behind);
     }
-    follows.disabled = !count;
-    return count;
+    face();
   }
 
   function followUp() {
     clearTimeout(timer);
-    if (!all.isConnected) return; // Python is not asked for yet
+    if (!isOn()) return; // Python is not asked for yet
     const first = cells.filter((c) => !c.needs && (text(c) !== c.shown || c.stale || c.failed));
     const graph = follow.graph(cells);
     const later = follow.after(cells, graph, first.map((c) => c.place));
@@ -540,10 +536,9 @@
     remember();
     clearTimeout(timer);
     drop();
-    meanwhile = "Code and output are the book's again. Python starts afresh.";
+    meanwhile = "the book's again: Python starts afresh";
     restart();
     mark();
-    document.documentElement.dataset.live = "idle";
   }
 
   // --- what comes from the worker ---
@@ -664,6 +659,7 @@
   }
 
   // --- the worker, and what is to be run ---
+  const runs = (cell) => `running ${cell.name}${cell.extra ? "" : ` of ${cells.length}`}`;
   let worker, ready, running, expected, loaded, interrupts, turns, asking;
   let meanwhile = ""; // what is said while Python starts afresh and nobody waits for it
   let ran = 0; // cells, since something was asked for
@@ -682,7 +678,6 @@
     loaded = turns = 0;
     for (const cell of cells) cell.turn = cell.last = 0;
     expected = megabytes[0] * 1e6;
-    progress.hidden = false;
     advance(0);
     const [began, mine] = [performance.now(), worker];
     worker.onmessage = ({ data: message }) => {
@@ -702,12 +697,9 @@
   function advance(bytes) {
     loaded += bytes;
     const share = Math.min(100, Math.round((100 * loaded) / expected));
-    progress.setAttribute("aria-valuenow", share);
-    progress.firstChild.style.inlineSize = `${share}%`;
-    const size = `${(loaded / 1e6).toFixed(0)} MB`;
-    progress.setAttribute("aria-valuetext", size);
-    if (!ready) say(meanwhile || (share < 100 ? "Loading Python …" : "Starting Python …"));
-    else if (running) say(`Running ${running.name}: loading what it imports …`);
+    press.style.setProperty("--loaded", `${share}%`);
+    if (!ready) say(meanwhile || "starting Python");
+    else if (running) say(`${runs(running)}: loading`);
   }
 
   // On a wide page a figure comes at once, in this form alone; the narrow one comes if it is needed.
@@ -725,13 +717,11 @@
     else if (message.picked !== undefined) pick(message.picked);
     else if (message.widget) withHost(() => host.heard(message.widget, message.buffers));
     else if (message.bytes) {
-      progress.hidden = ready && !running;
       advance(message.bytes);
     } else if (message.ready) {
       ready = true;
-      progress.hidden = true;
       expected = megabytes[1] * 1e6;
-      say(meanwhile || "Python is ready.");
+      say(meanwhile || upToDate());
       next();
     } else if (message.failed) lost(message.failed);
     else if (message.began) clearTimeout(asking);
@@ -770,7 +760,6 @@
   // The worker is gone: the page goes on, and the next run has another one.
   function lost(why) {
     clearTimeout(asking);
-    progress.hidden = true;
     drop();
     ended();
     if (running) {
@@ -779,7 +768,6 @@
       if (!running.extra) running.failed = true;
     }
     running = undefined;
-    document.documentElement.dataset.live = "idle";
     say(`Python ${ready ? "broke off" : "did not start"}: ${why}.`);
     mark();
   }
@@ -835,10 +823,7 @@
   function next() {
     if (!ready || running) return;
     running = prepared();
-    if (!running) {
-      document.documentElement.dataset.live = "idle";
-      return;
-    }
+    if (!running) return face();
     waiting.delete(running);
     const cell = running;
     cell.sent = text(cell);
@@ -849,7 +834,7 @@
     if (!cell.quiet) fresh(cell);
     cell.el.classList.add("live-running");
     if (cell.time && !cell.quiet) cell.time.textContent = "running …";
-    say(`Running ${cell.name} of ${cells.length} …`);
+    say(runs(cell));
     host?.flush();
     const above = cells.slice(0, cell.place).filter((c) => c.turn).map((c) => c.name);
     const how = { keep: !cell.extra, quiet: cell.quiet, wide: !slim.matches };
@@ -863,7 +848,7 @@
     const cell = running;
     running = undefined;
     clearTimeout(asking);
-    progress.hidden = true;
+    press.style.removeProperty("--loaded");
     released(cell, cell.quiet ? cell.time?.textContent : `${seconds.toFixed(1)} s`);
     if (cell.cancelled && !ok) {
       cell.stale = true;
@@ -873,18 +858,11 @@
     } else if (!cell.extra) settled(cell);
     if (cell.failed) drop();
     cell.asked = false;
-    const count = mark();
-    const marked = count ? ` ${toRun(count)}` : "";
+    mark();
     ran += !cell.quiet;
     if (!waiting.size) {
-      const title = cell.name.replace(/^./, (c) => c.toUpperCase());
-      const name = ran === cells.length ? "All cells have" : ran > 1 ? `${ran} cells have` : `${title} has`;
-      const ask = react.checked ? "Now change a number." : "Now change a number, and press “Run what follows”.";
-      say(
-        cell.failed
-          ? `${cell.stopping ? "Stopped" : "An error"} in ${cell.name}.${marked}`
-          : `${name} run.${ran === cells.length && !count ? ` ${ask}` : marked}`,
-      );
+      const first = ran === cells.length && !stale ? "ready: now change a number" : upToDate();
+      say(cell.failed ? `${cell.stopping ? "stopped" : "an error"} in ${cell.name}` : first);
       ran = 0;
     }
     next();
@@ -939,7 +917,6 @@
   }
 
   function enqueue(more, on = false) {
-    document.documentElement.dataset.live = "running";
     meanwhile = "";
     spread = on;
     for (const cell of more) {
@@ -947,6 +924,7 @@
       waiting.add(cell);
     }
     if (!worker) boot();
+    face();
     next();
   }
 
@@ -991,10 +969,9 @@
       if (running !== cell) return;
       cell.output.append(note("ended"));
       if (!cell.extra) cell.failed = true;
-      meanwhile = "Stopped. Python starts afresh.";
+      meanwhile = "stopped: Python starts afresh";
       restart("stopped");
       mark();
-      document.documentElement.dataset.live = "idle";
     };
     if (ask()) setTimeout(end, 3000);
     else end();
@@ -1003,15 +980,15 @@
   // Stopped before Python was there: what was to be run waits for a click.
   function asBefore() {
     for (const cell of cells) cell.asked = false;
-    meanwhile = "Stopped. Python is being loaded, and nothing runs.";
+    meanwhile = "stopped before the first cell";
     say(meanwhile);
-    document.documentElement.dataset.live = "idle";
+    face();
   }
 
   function start() {
     if (location.protocol === "file:") {
-      say("");
-      status.append(
+      status.classList.add("live-long");
+      status.replaceChildren(
         "A browser runs Python only in pages that come from a server, not from a folder. In the " +
           "folder of this site run ",
         make("code", {}, "python -m http.server"),
@@ -1023,16 +1000,10 @@
     }
     cells.forEach(open);
     tally();
-    begin.replaceWith(follows, all, stop, reset, reacts);
-    bar.classList.add("live-on");
-    bar.after(
-      make(
-        "p",
-        { class: "live-keys", id: "live-keys" },
-        "Ctrl+Enter runs a cell. Tab indents after you typed; Escape, then Tab, leaves the code.",
-      ),
-    );
-    all.focus();
+    document.documentElement.dataset.live = "running";
+    const keys = "Ctrl+Enter runs a cell. Tab indents after you typed; Escape, then Tab, leaves the code.";
+    const rest = make("div", { class: "live-rest" }, reacts, reset, make("p", { id: "live-keys" }, keys));
+    (cells.find((c) => c.handles) ?? cells[0]).el.before(rest);
     mark();
     enqueue(cells, true);
   }
