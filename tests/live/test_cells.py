@@ -26,13 +26,13 @@ def test_a_lesson_becomes_live(page):
     for cell in cells:
         if cell["kind"] == "answer":
             assert "mine =" in cell["solution"] and "mine" in cell["solves"]["writes"]
-    marked = live_page(plain(page), notebook, page, [1, 2])
+    marked = live_page(plain(page), notebook, page, [1, 2], [page])
     pairs = re.findall(r'data-live="([^"]+)".*?<pre>(.*?)</pre>', marked, re.S)
     code = [(name, html.unescape(text)) for name, text in pairs]
     assert code == [(cell.id, cell.source) for cell in wanted]
     assert marked.index("follow.js") < marked.index("live.js")
     with pytest.raises(Refused, match="make book first"):
-        live_page(plain(page)[:-900], notebook, page, [1, 2])
+        live_page(plain(page)[:-900], notebook, page, [1, 2], [page])
 
 
 def test_what_a_page_lacks_of_pytorch_is_named():

@@ -144,7 +144,7 @@ def test_work_is_judged_and_kept_on_the_device_alone(browser, site, tmp_path):
     with tab.expect_file_chooser() as asked:
         tab.get_by_role("button", name="Open a file").click()
     asked.value.set_files(tmp_path / "work.json")
-    tab.locator(".live-own >> text=is here again").wait_for()
+    tab.locator(".live-own >> text=was taken").wait_for()
     assert "Solved: 1 of " in summary.inner_text()
     run(mine)  # in a Python that has run nothing: what it needs of the cells above runs first
     tab.locator(".live-output >> text=Right").wait_for(timeout=300_000)

@@ -55,7 +55,8 @@ BESIDE = """window.Worker = class {
 def set_up(tab, given: Iterable[dict], name: str = "a.html") -> str:
     """Have a tab find a page with such cells and nothing else; its address."""
     given = [{"kind": "open", "needs": "", "names": {}, **cell} for cell in given]
-    data = json.dumps({"cells": given, "data": [], "megabytes": [1, 1], "notebook": ""})
+    about = {"cells": given, "pages": ["a.html", "b.html"], "megabytes": [1, 1]}
+    data = json.dumps(about | {"data": [], "notebook": ""}).replace("</", "<\\/")
     field = '<div class="cell" data-live="{id}"><div class="cell_input"></div></div>'
     shown = "".join(field.format(**cell) for cell in given)
     scripts = "".join(f'<script src="{script}.js"></script>' for script in ("follow", "live"))

@@ -3,12 +3,13 @@
 (() => {
   const island = document.getElementById("live-page");
   if (!island) return;
-  const { cells, data, megabytes, notebook } = JSON.parse(island.textContent);
+  const { cells, data, megabytes, notebook, pages: known } = JSON.parse(island.textContent);
   const home = new URL(".", document.currentScript.src);
   const KEYS = "live:"; // one a page
   const MINE = KEYS + location.pathname;
   const FOLDER = MINE.slice(0, MINE.lastIndexOf("/") + 1); // the book's: a server may have others
-  const REACT = "live-react";
+  const ROOT = new URL("../../", home).pathname; // the site's
+  const [REACT, QUIZ] = [`live-react:${ROOT}`, `quiz:${ROOT}`];
   const EXTENTS = `live-extents:${FOLDER.slice(KEYS.length)}`;
   const FORMAT = "direct-drive-work-1";
 
@@ -49,10 +50,13 @@
       return false;
     }
   };
-  const isPair = (c) => Array.isArray(c) && c.length === 2 && c.every((t) => typeof t === "string");
+  // Of each cell the book's code and the reader's, and of code from a file a third word: it was
+  // "opened", and the book's runs in its place, until it is "accepted".
+  const isText = (t) => typeof t === "string";
+  const isChange = (c) => Array.isArray(c) && [2, 3].includes(c.length) && c.every(isText);
   const work = (record) => ({
-    changes: Object.fromEntries(Object.entries(record?.changes ?? {}).filter(([, c]) => isPair(c))),
-    solved: Array.isArray(record?.solved) ? record.solved : [],
+    changes: Object.fromEntries(Object.entries(record?.changes ?? {}).filter(([, c]) => isChange(c))),
+    solved: Array.isArray(record?.solved) ? record.solved.filter(isText) : [],
   });
   let mine = work(read(MINE));
   try {
@@ -63,13 +67,11 @@
 
   // Extents that the reader picked in one lesson, for those that follow: the text of a file.
   let extents = read(EXTENTS);
-  const picked = () => {
-    const kept = blocked ? extents : read(EXTENTS);
-    return typeof kept === "string" ? kept : "";
-  };
+  const asExtents = (text) => (isText(text) && /^[\d\s.,[\]e+-]{0,999}$/.test(text) ? text : "");
+  const picked = () => asExtents(blocked ? extents : read(EXTENTS));
   function pick(text) {
-    extents = text;
-    write(EXTENTS, text || null);
+    extents = asExtents(text);
+    write(EXTENTS, extents || null);
   }
 
   // Another tab may have written since: only what was changed in this one is written over it. What
@@ -77,10 +79,10 @@
   function remember() {
     const there = work(read(MINE) ?? (blocked ? mine : undefined));
     const touched = cells.filter((c) => c.area && c.area.value !== c.written);
-    for (const { id, source, area } of touched) {
+    for (const { id, source, area, from } of touched) {
       const before = there.changes[id];
       if (before && before[0] !== source) there.changes[`${id}, earlier`] = before;
-      if (area.value !== source) there.changes[id] = [source, area.value];
+      if (area.value !== source) there.changes[id] = [source, area.value, from].filter(Boolean);
       else delete there.changes[id];
     }
     there.solved = [...new Set([...there.solved, ...mine.solved])];
@@ -186,11 +188,14 @@
     heardOf.textContent = "A file with your work on all pages of the book was saved.";
   }
 
+  // What somebody else wrote is a program. It is asked for, and shown; none of it runs with the rest.
+  const LARGEST = 1_000_000; // bytes: all work on all pages is less
+  const DISGUISED = /[\u202a-\u202e\u2066-\u2069]/; // signs that show code in another order than it has
   async function takeIn(file) {
     chosen.value = "";
     let content;
     try {
-      content = JSON.parse(await file.text());
+      if (file.size <= LARGEST) content = JSON.parse(await file.text());
     } catch {
       content = undefined;
     }
@@ -200,47 +205,55 @@
     }
     remember();
     const here = MINE.slice(FOLDER.length);
-    const both = Object.entries(content.pages).map(([page, theirs]) => ({
-      page,
-      own: page === here ? mine : work(read(FOLDER + page)),
-      other: work(theirs),
-    }));
-    const differ = both.flatMap(({ own, other }) =>
-      Object.keys(other.changes).filter((id) => own.changes[id] && own.changes[id][1] !== other.changes[id][1]),
-    ); // prettier-ignore
-    const theirs = typeof content.extents === "string" ? content.extents : "";
+    const both = known.filter((page) => Object.hasOwn(content.pages, page)).map((page) => {
+      const own = page === here ? mine : work(read(FOLDER + page));
+      const { changes, solved } = work(content.pages[page]);
+      const theirs = Object.entries(changes).filter(
+        ([id, [, code]]) => own.changes[id]?.[1] !== code && !DISGUISED.test(code),
+      );
+      return { page, own, theirs, solved };
+    }); // prettier-ignore
+    const motions = asExtents(content.extents);
+    const every = both.flatMap(({ own, theirs }) => theirs.map(([id]) => own.changes[id]));
+    const over = every.filter(Boolean).length;
     const others = [
-      differ.length && `other code for ${many(differ.length, "cell")} that you changed here`,
-      theirs && picked() && theirs !== picked() && "other motions than you picked",
+      over && `your own code of ${many(over, "cell")}`,
+      motions && picked() && motions !== picked() && "the motions that you picked",
     ].filter(Boolean);
-    const ask = `The file has ${others.join(", and ")}. Take it in place of yours?`;
-    const over = !others.length || confirm(ask);
-    for (const { page, own, other } of both) {
-      const [first, last] = over ? [own, other] : [other, own];
-      const changes = { ...first.changes, ...last.changes };
-      const all = { changes, solved: [...new Set([...own.solved, ...other.solved])] };
+    const ask = [
+      `The file holds code for ${many(every.length, "cell")} on ${many(both.length, "page")}.`,
+      "None of it runs before you have pressed “Run” at its cell: read it first.",
+      others.length ? `Take it in place of ${others.join(", and ")}?` : "Take it?",
+    ];
+    if (!confirm(ask.join(" "))) return (heardOf.textContent = "Nothing was changed.");
+    for (const { page, own, theirs, solved } of both) {
+      const opened = theirs.map(([id, [from, code]]) => [id, [from, code, "opened"]]);
+      const changes = { ...own.changes, ...Object.fromEntries(opened) };
+      const all = { changes, solved: [...new Set([...own.solved, ...solved])] };
       if (page === here) mine = all;
       write(FOLDER + page, all);
     }
-    if (theirs && (over || !picked())) {
-      pick(theirs);
-      worker?.postMessage({ picked: theirs });
+    if (motions) {
+      pick(motions);
+      worker?.postMessage({ picked: motions });
     }
     for (const cell of cells) if (cell.area) setText(cell, keptText(cell));
     remember();
     mark();
-    const again = `Your work on ${many(both.length, "page")} is here again.`;
-    heardOf.textContent = blocked ? `Your work on this page is here again. ${keptNothing}` : again;
+    const taken = (count) => `The work on ${many(count, "page")} was taken.`;
+    heardOf.textContent = blocked ? `${taken(1)} ${keptNothing}` : taken(both.length);
   }
 
   function erase() {
-    if (!confirm("Erase your changes and what you solved, on all pages of this book?")) return;
+    if (!confirm("Erase your changes, what you solved and the quiz, on all pages of this book?")) return;
     try {
       for (const key of Object.keys(localStorage)) if (key.startsWith(FOLDER)) write(key, null);
     } catch {
       blocked = true;
     }
     mine = work();
+    write(QUIZ, null);
+    dispatchEvent(new StorageEvent("storage", { key: QUIZ })); // its questions hear of it
     pick("");
     worker?.postMessage({ picked: "" });
     write(REACT, null);
@@ -263,11 +276,19 @@
   if (blocked) say(calm(""));
 
   // --- cells ---
-  const text = (cell) => cell.area?.value ?? cell.source;
-  const keptText = (cell) => {
-    const [from, changed] = mine.changes[cell.id] ?? [];
-    return from === cell.source && typeof changed === "string" ? changed : cell.source;
-  };
+  // What runs: of code that a file brought, the book's own until the reader has accepted it.
+  const text = (cell) => (cell.from === "opened" ? cell.source : (cell.area?.value ?? cell.source));
+  function keptText(cell) {
+    const [source, changed, from] = mine.changes[cell.id] ?? [];
+    cell.from = source === cell.source ? from : undefined;
+    return source === cell.source ? changed : cell.source;
+  }
+  function accept(cell) {
+    if (cell.from !== "opened") return;
+    cell.from = "accepted";
+    cell.written = undefined; // it is kept with that word
+    remember();
+  }
 
   function open(cell, number) {
     const input = cell.el.querySelector(".cell_input");
@@ -290,10 +311,12 @@
     cell.mark = make("span", { class: "live-mark" });
     cell.solved = make("span", { class: "live-solved" });
     const check = cell.kind === "check";
+    const run = () => {
+      accept(cell);
+      enqueue(withCheck(number));
+    };
     tools.append(
-      button(check ? "Check" : "Run", `${check ? "Check the answer" : "Run"}: ${cell.name}`, () =>
-        enqueue(withCheck(number)),
-      ),
+      button(check ? "Check" : "Run", `${check ? "Check the answer" : "Run"}: ${cell.name}`, run),
     );
     if (!check)
       tools.append(
@@ -335,7 +358,7 @@
     cell.area.addEventListener("keydown", (event) => {
       if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) {
         event.preventDefault();
-        enqueue(withCheck(number));
+        run();
       } else if (event.key === "Escape") indents = false;
       else if (event.key === "Tab" && indents && !event.shiftKey && !event.ctrlKey) {
         event.preventDefault();
@@ -351,6 +374,7 @@
 
   function fit(cell) {
     cell.area.rows = cell.area.value.split("\n").length;
+    if (cell.area.value === cell.source) cell.from = undefined;
     cell.el.classList.toggle("live-changed", cell.area.value !== cell.source);
     for (const update of cell.sliders ?? []) update();
   }
@@ -365,7 +389,10 @@
   function changed(cell) {
     fit(cell);
     remember();
-    if (blocked) heardOf.textContent = keptNothing;
+    if (blocked) {
+      heardOf.textContent = keptNothing;
+      say(calm(""));
+    }
     mark();
     clearTimeout(timer);
     if (react.checked) timer = setTimeout(followUp, 500);
@@ -448,9 +475,11 @@
       const behind = cell.stale || later.has(cell.place);
       const words = different.includes(cell)
         ? "Changed, and not run since."
-        : behind
-          ? "May show what came before your change."
-          : "";
+        : cell.from === "opened"
+          ? "From a file: the book's own code runs in its place until you have read this and pressed “Run”."
+          : behind
+            ? "May show what came before your change."
+            : "";
       stale += behind || different.includes(cell);
       if (cell.mark.textContent !== words) cell.mark.textContent = words;
       cell.el.classList.toggle("live-stale", behind);
@@ -563,6 +592,10 @@
         " and run it on your own machine.",
       ],
       stopped: () => [`Stopped. ${text}`],
+      foreign: () => [
+        "A figure to handle is not shown after code from a file has run: its script would run in " +
+          "this page. “Reset” starts Python afresh.",
+      ],
       ended: () => [
         "Stopped. A cell that computes hears nothing, so Python was ended and starts afresh. " +
           "Your code and all other output stay; the next run first does again what it needs of " +
@@ -583,7 +616,7 @@
 
   // As MathJax is told to read them on the book's pages.
   const formulas = (text) =>
-    text.replaceAll("\\|", "|").replace(/(\$\$?)(.+?)\1/gs, (_, sign, tex) =>
+    text.replaceAll("\\|", "|").replaceAll("&lt;", "<").replace(/(\$\$?)(.+?)\1/gs, (_, sign, tex) =>
       sign === "$" ? `\\(${tex}\\)` : `\\[${tex}\\]`,
     );
 
@@ -604,9 +637,31 @@
     );
   }
 
+  // Of a Python in which code from a file ran, nobody knows what it makes even of the book's cells:
+  // HTML shows in a frame in which no script runs, and scripts of widgets do not come at all.
+  const FORMED = new Set(["html", "figure", "markdown", "latex", "widget"]);
+  function framed(kind, text) {
+    if (kind === "widget") return [note("foreign")];
+    if (kind === "markdown" || kind === "latex") return [printed(text, "text")];
+    const el = make("iframe", { sandbox: "allow-same-origin", class: "output", title: "Output" });
+    const styles = [...document.querySelectorAll('link[rel="stylesheet"]')].map((link) => link.outerHTML);
+    const own = `'unsafe-inline' ${location.origin}`;
+    const policy = `default-src 'none'; img-src data:; style-src ${own}; font-src ${location.origin}`;
+    const head = `<meta http-equiv="Content-Security-Policy" content="${policy}">${styles.join("")}`;
+    const theme = document.documentElement.dataset.theme ?? "light";
+    const body = `<body class="bd-article"><div class="live-output">${text}</div></body>`;
+    el.srcdoc = `<!doctype html><html data-theme="${theme}">${head}${body}</html>`;
+    el.addEventListener("load", () => {
+      const height = el.contentDocument.body.firstElementChild?.scrollHeight ?? 0;
+      el.style.blockSize = `${Math.min(height + 8, 2000)}px`;
+    });
+    return [el];
+  }
+
   function show(cell, kind, text) {
     const place = cell.output;
     if (kind === "again") return emptied(cell);
+    if (foreign && FORMED.has(kind)) return place.append(...framed(kind, text));
     if (kind === "text" || kind === "warning" || kind === "error") {
       const last = place.lastElementChild;
       if (last?.classList.contains(`live-${kind}`)) last.firstChild.append(text);
@@ -660,6 +715,7 @@
 
   // --- the worker, and what is to be run ---
   const runs = (cell) => `running ${cell.name}${cell.extra ? "" : ` of ${cells.length}`}`;
+  let foreign; // whether code from a file has run in this Python
   let worker, ready, running, expected, loaded, interrupts, turns, asking;
   let meanwhile = ""; // what is said while Python starts afresh and nobody waits for it
   let ran = 0; // cells, since something was asked for
@@ -674,7 +730,7 @@
 
   function boot() {
     worker = new Worker(new URL("worker.mjs", home), { type: "module" });
-    ready = false;
+    ready = foreign = false;
     loaded = turns = 0;
     for (const cell of cells) cell.turn = cell.last = 0;
     expected = megabytes[0] * 1e6;
@@ -713,6 +769,7 @@
   }
 
   function heard(message) {
+    if (foreign && (message.form || message.widget)) return;
     if (message.form) inBoth(message);
     else if (message.picked !== undefined) pick(message.picked);
     else if (message.widget) withHost(() => host.heard(message.widget, message.buffers));
@@ -827,6 +884,7 @@
     waiting.delete(running);
     const cell = running;
     cell.sent = text(cell);
+    foreign ||= Boolean(cell.from) && cell.sent !== cell.source;
     cell.quiet = !cell.asked && !cell.stale && !cell.failed && cell.sent === cell.shown && !cell.widget;
     cell.failed = cell.cancelled = cell.stopping = false;
     cell.news = undefined;

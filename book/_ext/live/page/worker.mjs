@@ -42,6 +42,13 @@ function pick(text = "") {
   else if (pickedNow()) python.FS.unlink(KEPT_IN);
 }
 
+// Cells have no way to what other pages of this site's address keep.
+function shut() {
+  const gone = { indexedDB: self, caches: self, BroadcastChannel: self, Worker: self, storage: self.navigator };
+  for (const [name, holder] of Object.entries(gone))
+    for (let at = holder; at; at = Object.getPrototypeOf(at)) delete at[name];
+}
+
 async function start(data) {
   const lock = here("pyodide/pyodide-lock.json");
   const [found, ...files] = await Promise.all([lock, ...MODULES, ...data].map(file));
@@ -52,13 +59,14 @@ async function start(data) {
     lockFileURL: lock,
     convertNullToNone: true,
   });
-  await python.loadPackage(["numpy", "ddlib"], quiet);
+  await load(["numpy", "ddlib"]);
   python.FS.mkdirTree("/book/data");
   python.FS.chdir("/book"); // where a notebook of the book runs
   [...MODULES, ...data].forEach((path, k) =>
     python.FS.writeFile(`/book/${path}`, new Uint8Array(files[k])),
   );
   python.runPython("import sys; sys.path.insert(0, '/book')");
+  shut();
   kernel = python.pyimport("kernel");
   kernel.start(python.runPython(PAUSE));
   kernel.page = (text, buffers) => tell({ widget: JSON.parse(text), buffers: buffers.toJs() });
@@ -86,7 +94,13 @@ def pause():
 pause
 `;
 
-const quiet = { messageCallback() {}, errorCallback() {} };
+// Packages, by their hashes in the lock. Pyodide itself only writes down which of them it refused.
+async function load(names) {
+  const refused = [];
+  const errorCallback = (text) => refused.push(text);
+  await python.loadPackage(names, { messageCallback() {}, errorCallback });
+  if (refused.length) throw new Error(`a package did not come whole (${refused[0].split("\n")[0]})`);
+}
 
 // Get the package in which a module lies, once; whether there is one.
 const asked = new Set();
@@ -103,7 +117,7 @@ async function get(module) {
   }
   const name = Object.keys(packages).find((key) => packages[key].imports.includes(module));
   if (!name) return false;
-  await python.loadPackage(name, quiet);
+  await load(name);
   return true;
 }
 
