@@ -55,6 +55,7 @@ def write(root: Path, site: Path, mirror: str, store: Path, out: Path) -> list[s
         shutil.copytree(site, part)
         folder = part / "_static" / "live"
         megabytes = write_packages(root, mirror, store, folder)
+        (folder / "isolate.js").rename(part / "isolate.js")  # it reaches what is beside and below
         pages = {}
         for path in chapters(root):
             page = path.relative_to(root).with_suffix("").as_posix()

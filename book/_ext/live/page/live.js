@@ -156,7 +156,8 @@
     make(
       "p",
       {},
-      "Your changes and the exercises that you solved stay on this device. Nothing is sent.",
+      "Your changes and the exercises that you solved stay on this device. Nothing is sent. A small script " +
+        "stays, too, which lets this site's pages stop Python at once. “Erase” takes all of it.",
     ),
     button("Save as a file", "Save as a file: your work on all pages of the book", () => takeOut()),
     button("Open a file", "Open a file with your work", () => chosen.click()),
@@ -258,6 +259,7 @@
     worker?.postMessage({ picked: "" });
     write(REACT, null);
     react.checked = false;
+    navigator.serviceWorker?.getRegistration(ROOT).then((found) => found?.unregister());
     if (cells.some((c) => c.area)) asBuilt(true);
     tally();
     heardOf.textContent = "Your work on all pages of this book was erased.";
@@ -716,7 +718,7 @@
   // --- the worker, and what is to be run ---
   const runs = (cell) => `running ${cell.name}${cell.extra ? "" : ` of ${cells.length}`}`;
   let foreign; // whether code from a file has run in this Python
-  let worker, ready, running, expected, loaded, interrupts, turns, asking;
+  let worker, ready, running, expected, loaded, interrupts, turns;
   let meanwhile = ""; // what is said while Python starts afresh and nobody waits for it
   let ran = 0; // cells, since something was asked for
   let spread = false; // whether what follows runs, too
@@ -739,7 +741,8 @@
     worker.onmessage = ({ data: message }) => {
       if (mine !== worker) return;
       if (message.ready) patience = Math.max(3000, performance.now() - began);
-      heard(message);
+      if (message.lives) navigator.locks.request(message.lives, () => mine === worker && lost("it was ended"));
+      else heard(message);
     };
     worker.onerror = (event) => {
       event.preventDefault?.();
@@ -781,7 +784,6 @@
       say(meanwhile || upToDate());
       next();
     } else if (message.failed) lost(message.failed);
-    else if (message.began) clearTimeout(asking);
     else if (message.kind === "moved") moved(message.names);
     else if (message.done) finish(message);
     else if (running && message.run === running.name) {
@@ -816,7 +818,6 @@
 
   // The worker is gone: the page goes on, and the next run has another one.
   function lost(why) {
-    clearTimeout(asking);
     drop();
     ended();
     if (running) {
@@ -896,16 +897,13 @@
     host?.flush();
     const above = cells.slice(0, cell.place).filter((c) => c.turn).map((c) => c.name);
     const how = { keep: !cell.extra, quiet: cell.quiet, wide: !slim.matches };
-    worker.postMessage({ run: cell.name, source: cell.sent, above, how });
     if (interrupts) interrupts[0] = 0;
-    const mine = worker; // an idle worker answers at once: or it is no more
-    asking = setTimeout(() => mine === worker && lost("it does not answer"), 30_000);
+    worker.postMessage({ run: cell.name, source: cell.sent, above, how });
   }
 
   function finish({ seconds, ok }) {
     const cell = running;
     running = undefined;
-    clearTimeout(asking);
     press.style.removeProperty("--loaded");
     released(cell, cell.quiet ? cell.time?.textContent : `${seconds.toFixed(1)} s`);
     if (cell.cancelled && !ok) {
@@ -1011,7 +1009,6 @@
 
   function restart(time = "") {
     ended();
-    clearTimeout(asking);
     if (running) released(running, time);
     running = undefined;
     boot();
@@ -1024,7 +1021,7 @@
     if (!cell) return ready || asBefore();
     cell.stopping = true;
     const end = () => {
-      if (running !== cell) return;
+      if (running !== cell || !cell.stopping) return;
       cell.output.append(note("ended"));
       if (!cell.extra) cell.failed = true;
       meanwhile = "stopped: Python starts afresh";
@@ -1043,7 +1040,28 @@
     face();
   }
 
-  function start() {
+  // In a page that shares memory with its worker, Stop is heard at once. For that a page needs two
+  // headers, which isolate.js adds from the next load on. Without, Stop ends Python, and says so.
+  const AGAIN = `live-again:${ROOT}`; // the page is loaded once more, and then begins by itself
+  async function isolate() {
+    try {
+      if (isolated || sessionStorage.getItem(AGAIN)) return false;
+      await navigator.serviceWorker.register(`${ROOT}isolate.js`);
+      await Promise.race([navigator.serviceWorker.ready, new Promise((_, no) => setTimeout(no, 3000))]);
+      sessionStorage.setItem(AGAIN, "1");
+      location.reload();
+      return true;
+    } catch {
+      return false; // an old browser, a private window, or a page that came without encryption
+    }
+  }
+  try {
+    if (sessionStorage.getItem(AGAIN)) start().then(() => sessionStorage.removeItem(AGAIN));
+  } catch {
+    // there is no such storage
+  }
+
+  async function start() {
     if (location.protocol === "file:") {
       status.classList.add("live-long");
       status.replaceChildren(
@@ -1056,6 +1074,8 @@
       );
       return;
     }
+    say("starting Python");
+    if (isOn() || (await isolate())) return;
     cells.forEach(open);
     tally();
     document.documentElement.dataset.live = "running";

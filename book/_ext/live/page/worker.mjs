@@ -1,4 +1,4 @@
-// Python in a worker of its own: the page stays quick, and to stop means to end the worker.
+// Python in a worker of its own: the page stays quick.
 import { loadPyodide } from "./pyodide/pyodide.mjs";
 
 const here = (path) => new URL(path, import.meta.url).href;
@@ -18,6 +18,13 @@ self.fetch = async (...request) => {
   const { headers, status } = answer; // WebAssembly is compiled as it comes by its content type
   return new Response(answer.body.pipeThrough(count), { headers, status });
 };
+
+// While it lives it holds a lock. The page waits for that, and knows at once if the worker is no more.
+const life = `live-${Math.random()}`;
+self.navigator.locks?.request(life, () => {
+  tell({ lives: life });
+  return new Promise(() => {});
+});
 
 const MODULES = ["names.py", "kernel.py"];
 // Modules of this site that stand in for others.
@@ -144,7 +151,6 @@ async function act(message) {
     }
     if (!run) return pick(message.picked);
     wanted = false;
-    tell({ began: run });
     const began = performance.now();
     const show = (kind, text) => tell({ run, kind, text });
     const ok = await kernel.run.callKwargs(source, run, show, get, {
@@ -154,6 +160,10 @@ async function act(message) {
     if (pickedNow() !== picked) tell({ picked: (picked = pickedNow()) });
     tell({ run, done: true, ok, seconds: (performance.now() - began) / 1000 });
   } catch (error) {
+    if (run && error.type === "KeyboardInterrupt") {
+      tell({ run, kind: "stopped", text: "" });
+      return tell({ run, done: true, ok: false, seconds: 0 });
+    }
     tell({ failed: `${error.message ?? error}` });
   }
 }
