@@ -3,8 +3,10 @@
 import json
 
 import live_pages
+import nbformat
 import pytest
 from live import packages
+from live.handles import handles
 
 from ddlib.trajectories import KEPT_IN
 
@@ -86,6 +88,18 @@ def test_two_tabs_of_a_page_keep_what_was_done_in_each(reader):
     assert saved(tab)["pages"]["a.html"]["changes"]["two"] == ["b = 2", "b = 30"]
     field(tab, 0).fill("a = 1")  # as in the book
     assert changes(tab) == {"two": "b = 30"}
+
+
+def test_a_handle_moves_a_number_of_the_code_by_round_steps(reader):
+    cell = nbformat.v4.new_code_cell("kp = (750.0, 0.05)  # N m/rad\nn = 9")
+    cell.metadata["dd"] = {"handles": {"kp": {}, "n": {}}}
+    tab = reader({"id": "one", "source": cell.source, "handles": handles(cell)})
+    first, second, third = tab.locator(".live-handles input").all()
+    for slider, key in ((first, "ArrowRight"), (second, "ArrowLeft"), (third, "ArrowRight")):
+        slider.press(key)
+    assert field(tab, 0).input_value() == "kp = (800.0, 0.048)  # N m/rad\nn = 10"
+    told = [slider.get_attribute("aria-valuetext") for slider in (first, second, third)]
+    assert told == ["800", "0.048", "10"]
 
 
 def test_code_that_the_book_has_changed_since_is_kept(reader):

@@ -422,12 +422,7 @@
     return undefined;
   }
 
-  function written(value, { whole, step }) {
-    if (whole) return String(Math.round(value));
-    const digits = Math.max(1, Math.ceil(-Math.log10(step) - 1e-9));
-    const plain = value.toFixed(Math.min(digits, 12)).replace(/(\.\d+?)0+$/, "$1");
-    return plain;
-  }
+  const written = (value, { digits }) => value.toFixed(digits).replace(/(\.\d+?)0+$/, "$1");
 
   function sliders(cell) {
     cell.sliders = [];
@@ -449,7 +444,7 @@
         range.disabled = !spot;
         if (!spot) return (shown.textContent = "–");
         if (Number(range.value) !== spot.value) range.value = spot.value;
-        shown.textContent = written(spot.value, { ...handle, step: handle.step / 100 });
+        shown.textContent = spot.value;
         range.setAttribute("aria-valuetext", `${shown.textContent} ${handle.unit}`.trim());
       });
       return make("div", {}, make("label", { for: id }, name), range, shown);
