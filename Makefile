@@ -166,9 +166,11 @@ grade: $(READY)  ## a table of returned notebooks: FOLDER=returned, at most MINU
 	@$(WORKSHOP) book/_ext/grade.py "$(FOLDER)" --minutes "$(MINUTES)" --jobs "$(JOBS)"
 
 MIRROR ?=
+LIVE = PYTHONPATH="$$PWD/book/_ext" $(BIN)/python -m live --mirror "$(MIRROR)"
 live: $(READY)  ## pages that run in the browser, in _build/live; MIRROR=: whence packages come
+	@$(LIVE) --packages
 	@$(BIN)/python book/_ext/build.py
-	@PYTHONPATH="$$PWD/book/_ext" $(BIN)/python -m live --mirror "$(MIRROR)"
+	@$(LIVE)
 
 pdf: book $(TESTED)  ## the walk and the evidence as PDFs, in _build/pdf (needs Chromium)
 	@$(BIN)/python book/_ext/pdf.py
@@ -178,6 +180,7 @@ epub: book $(TESTED)  ## the walk as an EPUB, in _build/epub (needs Chromium)
 
 release: $(READY)  ## wheel, sites, PDFs, EPUB and notebooks in dist/, if tag, citation and changelog agree
 	@$(BIN)/python book/_ext/release.py --check
+	@$(LIVE) --packages
 	@$(MAKE) --no-print-directory pdf epub live
 	@$(BIN)/python book/_ext/release.py
 

@@ -84,7 +84,7 @@ def quote(name: str, value) -> None:
 
 @dataclass(frozen=True)
 class Table:
-    """A table that a notebook shows as Markdown."""
+    """A table that a notebook shows as Markdown; what looks like HTML in a cell stays text."""
 
     header: Sequence[str]  #: Column heads.
     rows: Iterable[Sequence]  #: Cells: text as it is, numbers by `significant`.
@@ -103,7 +103,13 @@ class Table:
     def _repr_markdown_(self) -> str:
         def line(cells):
             texts = (c if isinstance(c, str) else significant(c).replace("-", "−") for c in cells)
-            return "| " + " | ".join(text.replace("|", r"\|") for text in texts) + " |"
+            return f"| {' | '.join(map(_in_a_cell, texts))} |"
 
         rule = "|" + "|".join(" --- " for _ in self.header) + "|"
         return "\n".join([line(self.header), rule, *map(line, self.rows)])
+
+
+def _in_a_cell(text: str) -> str:
+    """Text that neither ends its cell or its row, nor begins a tag."""
+    text = re.sub(r"<(?=[A-Za-z/!?])", "&lt;", text.replace("|", r"\|"))
+    return re.sub(r"\s*[\n\r\v\f\x85\u2028\u2029]\s*", " ", text)

@@ -1,5 +1,6 @@
 """Tables: numbers as text, Markdown, verdicts."""
 
+import html
 import re
 
 import numpy as np
@@ -93,10 +94,18 @@ texts = st.text(st.characters(codec="ascii", categories=["L", "N", "P", "S"]), m
 @given(rows=st.lists(st.tuples(texts, texts, st.floats(0.1, 10)), max_size=4))
 def test_any_text_stays_in_its_cell(rows):
     lines = Table(("|a|", "b", "c"), rows)._repr_markdown_().split("\n")
+    lines = [html.unescape(line) for line in lines]
     assert len(lines) == 2 + len(rows)
     assert cells(lines[0]) == ["|a|", "b", "c"] and cells(lines[1]) == ["---"] * 3
     for line, row in zip(lines[2:], rows):
         assert cells(line) == [row[0], row[1], significant(row[2])]
+
+
+@pytest.mark.parametrize("cell", ["<img src=x onerror=f()>", "</td><b>", "<!-- x", "a\n\n<b>b"])
+def test_a_cell_begins_no_tag_and_no_row(cell):
+    lines = Table(("a", cell), [(1, cell)])._repr_markdown_().split("\n")
+    assert len(lines) == 3 and not re.search("<[a-z/!]", "".join(lines))
+    assert html.unescape(lines[2]) == f"| 1 | {' '.join(cell.split())} |"
 
 
 def test_rows_may_come_once_and_have_the_length_of_the_header():

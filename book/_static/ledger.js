@@ -4,7 +4,7 @@
   if (!tiles.length) return;
 
   const open = () => {
-    const id = decodeURIComponent(location.hash.slice(1));
+    const id = location.hash.slice(1); // of letters that no address has to write otherwise
     const tile = /^(claim|card)-/.test(id) && document.getElementById(id);
     if (!tile) return;
     for (let fold = tile; fold; fold = fold.parentElement.closest("details")) {

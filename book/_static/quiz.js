@@ -1,7 +1,7 @@
 // Questions one at a time, each behind its number, with an answer to choose and to check. Which of
 // them were answered right is kept in this browser, and nowhere else.
 (() => {
-  const KEY = "quiz";
+  const KEY = `quiz:${new URL("..", document.currentScript.src).pathname}`; // this book's
   const forms = [...document.querySelectorAll("form.quiz")];
   if (!forms.length) return;
   const make = (tag, set = {}, ...inside) => {
@@ -12,18 +12,23 @@
 
   // A page opened from a folder, or with cookies off, may have no storage: then the page remembers.
   let right = new Set();
+  const read = () => {
+    try {
+      right = new Set(JSON.parse(localStorage.getItem(KEY)));
+    } catch (error) {
+      if (error instanceof SyntaxError || error instanceof TypeError) right = new Set(); // not ours
+    }
+  };
   const keep = (change) => {
+    read();
     change(right);
     try {
-      const kept = new Set(JSON.parse(localStorage.getItem(KEY)));
-      change(kept);
-      localStorage.setItem(KEY, JSON.stringify([...kept]));
-      right = kept;
+      localStorage.setItem(KEY, JSON.stringify([...right]));
     } catch {
       // it is not kept
     }
   };
-  keep(() => {});
+  read();
 
   const told = make("p", { className: "quiz-told" });
   told.setAttribute("role", "status");
@@ -88,8 +93,16 @@
   const erase = make("button", { type: "button", textContent: "Erase my answers" });
   erase.addEventListener("click", () => {
     keep((kept) => forms.forEach((form) => kept.delete(form.id)));
+    again("Erased. ");
+  });
+  const again = (first) => {
     for (const begin of questions) begin();
-    count("Erased. ");
+    count(first);
+  };
+  addEventListener("storage", ({ key }) => {
+    if (key !== KEY) return; // another tab, or all work was erased
+    read();
+    again();
   });
   const group = make("div", { className: "quiz-numbers" }, ...numbers);
   group.setAttribute("role", "group");

@@ -1,6 +1,6 @@
 // One switch in the page's header shows all code, or only what teaches; it is remembered.
 (() => {
-  const KEY = "all-code";
+  const KEY = `all-code:${new URL("..", document.currentScript.src).pathname}`; // this book's
   const root = document.documentElement;
   const cells = document.querySelectorAll("article :is(.tag_bookkeeping, .tag_plumbing)");
   const folds = [...cells].map((cell) => cell.querySelector("details")).filter(Boolean);

@@ -558,7 +558,7 @@ def _parsed(svg: str) -> ElementTree.Element:
 
     Matplotlib's own style sheet goes, too: it would reach every element of the page.
     """
-    root = ElementTree.fromstring(svg)
+    root = ElementTree.fromstring(re.sub(r"[\x00-\x08\v\f\x0e-\x1f\ufffe\uffff]", "\ufffd", svg))
     for element in root.iter():
         element.tag = element.tag.rpartition("}")[2]
         for part in [child for child in element if child.tag.endswith(("}metadata", "}style"))]:

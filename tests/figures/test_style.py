@@ -187,6 +187,11 @@ def test_any_words_can_describe_a_figure(alt):
     assert ET.fromstring(made.svg).attrib["aria-label"] == alt
 
 
+def test_a_label_with_a_sign_that_no_svg_may_have_is_drawn():
+    made = illustrate(lambda figure: figure.text(0.5, 0.5, "a\x01b"), "A label.")
+    assert words(made) == ["a\ufffdb"] and check_sound(made) is None
+
+
 def test_a_saved_file_has_its_own_colours(tmp_path):
     path = tmp_path / "curve.svg"
     illustrate(draw, "A curve.").save(path)

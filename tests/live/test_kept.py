@@ -3,8 +3,10 @@
 import json
 
 import live_pages
+import nbformat
 import pytest
 from live import packages
+from live.handles import handles
 
 from ddlib.trajectories import KEPT_IN
 
@@ -41,7 +43,7 @@ def field(tab, k):
 
 
 def changes(tab) -> dict:
-    return {name: code for name, (_, code) in (tab.evaluate(STORED) or {})["changes"].items()}
+    return {name: code for name, (_, code, *_) in (tab.evaluate(STORED) or {})["changes"].items()}
 
 
 def saved(tab) -> dict:
@@ -88,6 +90,18 @@ def test_two_tabs_of_a_page_keep_what_was_done_in_each(reader):
     assert changes(tab) == {"two": "b = 30"}
 
 
+def test_a_handle_moves_a_number_of_the_code_by_round_steps(reader):
+    cell = nbformat.v4.new_code_cell("kp = (750.0, 0.05)  # N m/rad\nn = 9")
+    cell.metadata["dd"] = {"handles": {"kp": {}, "n": {}}}
+    tab = reader({"id": "one", "source": cell.source, "handles": handles(cell)})
+    first, second, third = tab.locator(".live-handles input").all()
+    for slider, key in ((first, "ArrowRight"), (second, "ArrowLeft"), (third, "ArrowRight")):
+        slider.press(key)
+    assert field(tab, 0).input_value() == "kp = (800.0, 0.048)  # N m/rad\nn = 10"
+    told = [slider.get_attribute("aria-valuetext") for slider in (first, second, third)]
+    assert told == ["800", "0.048", "10"]
+
+
 def test_code_that_the_book_has_changed_since_is_kept(reader):
     tab = reader()
     field(tab, 0).fill("a = 10")
@@ -103,23 +117,31 @@ def test_code_that_the_book_has_changed_since_is_kept(reader):
 
 
 @pytest.mark.parametrize("accept", [True, False])
-def test_a_file_does_not_replace_work_unasked(reader, accept):
+def test_a_file_is_taken_if_the_reader_says_so(reader, accept):
     tab = reader()
     field(tab, 0).fill("a = 10")
     field(tab, 1).fill("b = 20")
     given = {"changes": {"one": ["a = 1", "a = 7"]}, "solved": ["three"]}
-    asked, told = take(tab, file(a=given, b=given), accept)
-    assert len(asked) == 1 and "other code for 1 cell " in asked[0] and "2 pages" in told
+    asked, told = take(tab, file(a=given, b=given, c=given), accept)  # the book has no such page
+    assert len(asked) == 1 and "code for 2 cells on 2 pages" in asked[0]
+    assert "your own code of 1 cell?" in asked[0]
+    assert ("on 2 pages was taken" if accept else "Nothing was changed") in told
     assert changes(tab) == {"one": "a = 7" if accept else "a = 10", "two": "b = 20"}
     assert field(tab, 0).input_value() == changes(tab)["one"]
-    assert "Solved: 1 of 1" in tab.locator(".live-own summary").inner_text()
+    assert f"Solved: {int(accept)} of 1" in tab.locator(".live-own summary").inner_text()
+    kept = sorted(tab.evaluate("() => Object.keys(localStorage)"))
+    assert kept == ["live:/book/a.html", *(["live:/book/b.html"] if accept else [])]
     show(tab, name="b.html")
-    assert field(tab, 0).input_value() == "a = 7"
+    assert field(tab, 0).input_value() == ("a = 7" if accept else "a = 1")
 
 
 @pytest.mark.parametrize(
     "content",
-    ['{"format": "direct-drive-work-1", "pag', file() | {"format": "direct-drive-work-2"}],
+    [
+        '{"format": "direct-drive-work-1", "pag',
+        file() | {"format": "direct-drive-work-2"},
+        file(a={"changes": {"one": ["a = 1", "a = 7" + " " * 1_000_000]}}),  # it fills the storage
+    ],
 )
 def test_a_file_that_cannot_be_read_changes_nothing(reader, content):
     tab = reader()
@@ -134,6 +156,7 @@ def test_where_nothing_more_is_kept_it_is_told_and_a_file_has_all(reader):
     tab.evaluate(FULL)
     field(tab, 1).fill("b = 20")
     assert "keeps nothing" in tab.locator(".live-kept").text_content()
+    assert "keeps no changes" in tab.locator(".live-status").text_content()  # beside the button
     field(tab, 0).fill("a = 11")
     found = saved(tab)["pages"]["a.html"]["changes"]
     assert {name: code for name, (_, code) in found.items()} == {"one": "a = 11", "two": "b = 20"}
@@ -143,6 +166,8 @@ def test_where_nothing_more_is_kept_it_is_told_and_a_file_has_all(reader):
 def test_another_book_of_the_server_is_left_alone(reader):
     tab = reader()
     tab.evaluate("() => localStorage.setItem('live:/other/a.html', 'theirs')")
+    tab.evaluate("() => localStorage.setItem('quiz:/', '[\"quiz-1\"]')")
+    tab.get_by_role("switch").check()
     field(tab, 0).fill("a = 10")
     assert saved(tab)["pages"].keys() == {"a.html"}
     tab.once("dialog", lambda dialog: dialog.accept())
@@ -172,8 +197,8 @@ def test_extents_that_a_lesson_kept_come_back_in_the_next(browser):
     assert tab.evaluate("() => window.begun") == EXTENTS
     content = saved(tab)
     assert content["extents"] == EXTENTS
-    assert len(take(tab, content | {"extents": "[]"}, accept=False)[0]) == 1
-    assert saved(tab)["extents"] == EXTENTS
+    (asked,) = take(tab, content | {"extents": "[]"}, accept=False)[0]
+    assert "the motions that you picked" in asked and saved(tab)["extents"] == EXTENTS
     tab.once("dialog", lambda dialog: dialog.accept())
     tab.get_by_role("button", name="Erase").click()
     assert not saved(tab)["extents"]

@@ -16,7 +16,8 @@ def entry(name: str) -> dict:
     return {"file_name": name, "sha256": hashlib.sha256(name.encode()).hexdigest(), "depends": []}
 
 
-def test_only_what_the_lock_names_is_taken_and_nothing_is_left_half_done(tmp_path):
+def test_only_what_the_lock_names_is_taken_and_nothing_is_left_half_done(tmp_path, monkeypatch):
+    monkeypatch.setattr(packages, "core", lambda store: None)
     site, store, out = (tmp_path / name for name in ("html", "store", "live"))
     for folder in (site, store, out):
         folder.mkdir()
@@ -50,8 +51,22 @@ def test_without_a_mirror_wheels_come_from_pyodides_address_and_stay(tmp_path, m
         take([entry("numpy")], "", store)
     take([entry("numpy"), entry("scipy")], "", store)  # the server is gone, and not asked
     assert {path.read_text() for path in store.iterdir()} == {"numpy", "scipy"}
-    with pytest.raises(Refused, match=r"^no sympy of Pyodide .* cannot be reached .* MIRROR="):
-        take([entry("numpy"), entry("sympy")], "", store)
+    told = r"(?s)cannot be reached .* MIRROR=:\n    sympy\n    pandas$"  # all that is lacking
+    with pytest.raises(Refused, match=told):
+        take([entry(name) for name in ("numpy", "sympy", "pandas")], "", store)
+
+
+def test_a_core_that_was_changed_since_is_not_taken(tmp_path):
+    archive = tmp_path / f"pyodide-{packages.VERSION}.tgz"
+    archive.write_bytes(b"another")
+    with pytest.raises(Refused, match="is not the archive with SHA-512"):
+        packages.core(tmp_path)
+    assert not archive.exists()
+
+
+def test_packages_are_asked_for_before_the_book_is_built():
+    lines = (ROOT / "Makefile").read_text("utf-8").partition("\nlive:")[2].splitlines()[1:4]
+    assert [line.split()[-1] for line in lines] == ["--packages", "book/_ext/build.py", "@$(LIVE)"]
 
 
 def test_a_widget_finds_in_a_page_what_it_imports_of_its_still():

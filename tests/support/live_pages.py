@@ -20,6 +20,7 @@ KEPT = ROOT / "_build" / "pyodide" / packages.VERSION
 MIRROR = os.environ.get("DDLIB_LIVE_MIRROR", "")
 POLICY = f"{chromium.POLICY}; script-src 'self' 'unsafe-inline' blob: 'wasm-unsafe-eval'"
 IDLE = "html[data-live=idle]"
+HEADER = '<header class="article-header-buttons"></header>'
 
 
 def plain(page: str) -> str:
@@ -28,7 +29,7 @@ def plain(page: str) -> str:
     code = (html.escape(c.source) for c in lesson(page).cells if c.cell_type == "code")
     main = f"<main><section><h1>x</h1>{''.join(map(cell.format, code))}</section></main>"
     head = '<html lang="en"><meta charset="utf-8"><title>x</title>'
-    return f"<!doctype html>{head}<body>{main}</body></html>"
+    return f"<!doctype html>{head}<body>{HEADER}{main}</body></html>"
 
 
 def runs_through(tab, site: str, page: str) -> None:
@@ -54,11 +55,12 @@ BESIDE = """window.Worker = class {
 def set_up(tab, given: Iterable[dict], name: str = "a.html") -> str:
     """Have a tab find a page with such cells and nothing else; its address."""
     given = [{"kind": "open", "needs": "", "names": {}, **cell} for cell in given]
-    data = json.dumps({"cells": given, "data": [], "megabytes": [1, 1], "notebook": ""})
+    about = {"cells": given, "pages": ["a.html", "b.html"], "megabytes": [1, 1]}
+    data = json.dumps(about | {"data": [], "notebook": ""}).replace("</", "<\\/")
     field = '<div class="cell" data-live="{id}"><div class="cell_input"></div></div>'
     shown = "".join(field.format(**cell) for cell in given)
     scripts = "".join(f'<script src="{script}.js"></script>' for script in ("follow", "live"))
-    text = f"<main><section>{shown}</section></main>"
+    text = f"{HEADER}<main><section>{shown}</section></main>"
     text += f'<script type="application/json" id="live-page">{data}</script>{scripts}'
 
     def answer(route):

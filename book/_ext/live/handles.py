@@ -12,6 +12,7 @@ from __future__ import annotations
 import ast
 import math
 from collections.abc import Iterator
+from decimal import Decimal
 
 
 def handles(cell) -> list[dict]:
@@ -73,20 +74,27 @@ def _range(value: float, about: dict) -> dict:
     else:
         low, high = value / 10, 4 * value or 10
     low, high = about.get("from", low), about.get("to", high)
-    step = about.get("step", _usual_step(value))
+    step = about.get("step") or _usual_step(value, high - low)
     low = value - step * math.floor((value - low) / step + 1e-9)
     high = value + step * math.floor((high - value) / step + 1e-9)
-    digits = 0 if whole else max(1, -math.floor(math.log10(step)))
+    digits = 0 if whole else max(1, _decimals(step), _decimals(value))
     low, high, step = (round(end) if whole else round(end, digits) for end in (low, high, step))
     unit = about.get("unit", "")
-    return {"unit": unit, "low": low, "high": high, "step": step, "whole": whole}
+    return {"unit": unit, "low": low, "high": high, "step": step, "digits": digits}
 
 
-def _usual_step(value: float) -> float:
-    """About a hundredth of a value, so that it is on a step itself."""
-    if value == 0:
-        return 1 if isinstance(value, int) else 0.1
-    tens = math.floor(math.log10(abs(value))) - 1
-    steps = [10.0 ** (tens - k) for k in range(3)]
-    step = next((s for s in steps if abs(value / s - round(value / s)) < 1e-6), steps[-1])
-    return max(1, round(step)) if isinstance(value, int) else step
+def _usual_step(value: float, width: float) -> float:
+    """A round step, a hundredth of the width or a little more: a mouse hits it.
+
+    The value is a multiple of it, if that leaves ten steps.
+    """
+    power = math.floor(math.log10(width)) - 3
+    steps = [factor * 10.0**k for k in range(power, power + 3) for factor in (1, 2, 2.5, 5)]
+    steps = [step for step in steps if width / 100 <= step * (1 + 1e-9) <= width / 10]
+    if isinstance(value, int):
+        steps = [round(step) for step in steps if step >= 1 and step % 1 == 0] or [1]
+    return next((s for s in steps if abs(value / s - round(value / s)) < 1e-6), steps[0])
+
+
+def _decimals(value: float) -> int:
+    return max(0, -Decimal(f"{value:.9g}").normalize().as_tuple().exponent)

@@ -73,40 +73,37 @@ def read(mirror: str, name: str) -> bytes | None:
             return opened.read()
     except urllib.error.HTTPError:
         return None
-    except OSError as error:  # no network, no such host, or a break on the way
-        why = getattr(error, "reason", error)
-        raise Refused(
-            f"no {name} of Pyodide {VERSION}: {mirror} cannot be reached ({why}). Name a folder or "
-            f"an address that has it by MIRROR=, or try again with a way to {PUBLIC}."
-        ) from None
 
 
 def take(entries: list[dict], mirror: str, store: Path) -> None:
     """Wheels of a lock into a folder: all of them, or none that is not as the lock says."""
-    lacking = [
-        entry
+    lacking = {
+        entry["file_name"]: entry["sha256"]
         for entry in entries
         if not (store / entry["file_name"]).is_file()
         or sha256((store / entry["file_name"]).read_bytes()) != entry["sha256"]
-    ]
+    }
     if not lacking:
         return
     source = mirror or PUBLIC
-    files = f"{len(lacking)} wheels" if len(lacking) > 1 else lacking[0]["file_name"]
+    files = f"{len(lacking)} wheels" if len(lacking) > 1 else next(iter(lacking))
     print(f"==> Taking {files} of Pyodide {VERSION} from {source}", flush=True)
     problems, contents = [], {}
-    for entry in lacking:
-        name, wanted = entry["file_name"], entry["sha256"]
-        content = read(source, name)
-        if content is None:
-            problems.append(f"{name} is missing")
-        elif sha256(content) != wanted:
-            problems.append(f"{name} has SHA-256 {sha256(content)}, the lock wants {wanted}")
-        else:
-            contents[name] = content
+    try:
+        for name, wanted in lacking.items():
+            content = read(source, name)
+            if content is None:
+                problems.append(f"{name} is missing")
+            elif sha256(content) != wanted:
+                problems.append(f"{name} has SHA-256 {sha256(content)}, the lock wants {wanted}")
+            else:
+                contents[name] = content
+        why = "it has not all packages"
+    except OSError as error:  # no network, no such host, or a break on the way
+        why, problems = f"cannot be reached ({getattr(error, 'reason', error)})", list(lacking)
     if problems:
-        wanted = f"a folder or an address with the packages of Pyodide {VERSION} is needed"
-        raise Refused("\n    ".join([f"MIRROR={source}: {wanted}.", *problems]))
+        wanted = f"Name a folder or an address with these files of Pyodide {VERSION} by MIRROR="
+        raise Refused("\n    ".join([f"{source}: {why}. {wanted}:", *problems]))
     store.mkdir(parents=True, exist_ok=True)
     for name, content in contents.items():
         part = store / f"{name}.part"
@@ -115,16 +112,26 @@ def take(entries: list[dict], mirror: str, store: Path) -> None:
 
 
 def core(store: Path) -> None:
-    """Pyodide's core and its lock, by npm."""
-    if all((store / name).is_file() for name in (*CORE, LOCK)):
-        return
+    """Pyodide's core and its lock, out of npm's archive, which is kept and hashed each time."""
+    archive = store / f"pyodide-{VERSION}.tgz"
+    if not archive.is_file():
+        pack(store, archive)
+    if base64.b64encode(hashlib.sha512(archive.read_bytes()).digest()).decode() != TARBALL:
+        archive.unlink()
+        raise Refused(f"pyodide {VERSION} of npm is not the archive with SHA-512 {TARBALL}")
+    with tarfile.open(archive) as packed:
+        for name in (*CORE, LOCK):
+            (store / name).write_bytes(packed.extractfile(f"package/{name}").read())
+
+
+def pack(store: Path, archive: Path) -> None:
+    """Get the archive by npm."""
     npm = shutil.which("npm")
     if npm is None:
         raise Refused("npm is missing: Pyodide's core comes by it (https://nodejs.org)")
     store.mkdir(parents=True, exist_ok=True)
     command = [npm, "pack", "--loglevel=error", "--fetch-retries=1", f"pyodide@{VERSION}"]
     done = subprocess.run(command, cwd=store, capture_output=True, text=True)
-    archive = store / f"pyodide-{VERSION}.tgz"
     if done.returncode or not archive.is_file():
         reasons = [line.removeprefix("npm error ") for line in done.stderr.splitlines()]
         sentences = (line for line in reasons if " " in line and not line.startswith(CODES))
@@ -133,13 +140,6 @@ def core(store: Path) -> None:
             f"ended with “{next(sentences, 'no file')}”. Try again with a way to it (npm config "
             f"get registry); wheels come from MIRROR= or {PUBLIC}."
         )
-    if base64.b64encode(hashlib.sha512(archive.read_bytes()).digest()).decode() != TARBALL:
-        archive.unlink()
-        raise Refused(f"pyodide {VERSION} of npm is not the archive with SHA-512 {TARBALL}")
-    with tarfile.open(archive) as packed:
-        for name in (*CORE, LOCK):
-            (store / name).write_bytes(packed.extractfile(f"package/{name}").read())
-    archive.unlink()
 
 
 def zipped(files: dict[str, bytes]) -> bytes:
@@ -187,12 +187,19 @@ def wheel(name: str, version: str, files: dict, depends: list, imports: str, out
     }  # fmt: skip
 
 
-def write_packages(root: Path, mirror: str, store: Path, out: Path) -> list[int]:
-    """All that the worker loads, into a folder; returns megabytes, at first and in all."""
+def taken(mirror: str, store: Path) -> dict:
+    """The lock, with those packages alone that a page may need; their files lie in the store."""
     core(store)
     lock = json.loads((store / LOCK).read_text(encoding="utf-8"))
     packages = {name: lock["packages"][name] for name in with_dependencies(lock["packages"])}
     take(list(packages.values()), mirror, store)
+    return {**lock, "packages": packages}
+
+
+def write_packages(root: Path, mirror: str, store: Path, out: Path) -> list[int]:
+    """All that the worker loads, into a folder; returns megabytes, at first and in all."""
+    lock = taken(mirror, store)
+    packages = lock["packages"]
     pyodide = out / "pyodide"
     pyodide.mkdir(parents=True)
     for name in (*CORE, *(entry["file_name"] for entry in packages.values())):
@@ -210,7 +217,7 @@ def write_packages(root: Path, mirror: str, store: Path, out: Path) -> list[int]
         packages[name] = wheel(name, version, files, depends, imports, pyodide)
     rooms = [sources(root / "book" / name, root / "book") for name in ("workshop", "beyond")]
     (out / "workshop.zip").write_bytes(zipped(rooms[0] | rooms[1]))
-    (pyodide / LOCK).write_text(json.dumps({**lock, "packages": packages}), encoding="utf-8")
+    (pyodide / LOCK).write_text(json.dumps(lock), encoding="utf-8")
     shutil.copytree(PAGE, out, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
     at_first = [
         pyodide / name for name in (*CORE, LOCK, *(packages[n]["file_name"] for n in FIRST))

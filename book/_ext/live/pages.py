@@ -18,7 +18,7 @@ from live.packages import Refused, write_packages
 DATA = re.compile(r"""["']data/([\w.-]+)["']""")
 
 
-def live_page(text: str, notebook, page: str, megabytes: list[int]) -> str:
+def live_page(text: str, notebook, page: str, megabytes: list[int], pages: list[str]) -> str:
     """A built page with its cells marked, and with the script that makes them run."""
     code = [cell for cell in notebook.cells if cell.cell_type == "code"]
     before, *parts = re.split(r'(?=<div class="cell )', text)
@@ -33,6 +33,7 @@ def live_page(text: str, notebook, page: str, megabytes: list[int]) -> str:
         "data": sorted({name for cell in cells for name in DATA.findall(cell["source"])}),
         "megabytes": megabytes,
         "notebook": f"../_sources/{page}.ipynb",
+        "pages": [f"{name.rpartition('/')[2]}.html" for name in pages],
     }
     island = json.dumps(content).replace("</", "<\\/")
     added = (
@@ -54,16 +55,17 @@ def write(root: Path, site: Path, mirror: str, store: Path, out: Path) -> list[s
         shutil.copytree(site, part)
         folder = part / "_static" / "live"
         megabytes = write_packages(root, mirror, store, folder)
-        pages = []
+        (folder / "isolate.js").rename(part / "isolate.js")  # it reaches what is beside and below
+        pages = {}
         for path in chapters(root):
             page = path.relative_to(root).with_suffix("").as_posix()
             notebook = nbformat.read(path, as_version=4)
+            if (part / f"{page}.html").is_file() and has_script(notebook):
+                pages[page] = notebook
+        for page, notebook in pages.items():
             target = part / f"{page}.html"
-            if not target.is_file() or not has_script(notebook):
-                continue
-            text = live_page(target.read_text(encoding="utf-8"), notebook, page, megabytes)
+            text = live_page(target.read_text("utf-8"), notebook, page, megabytes, list(pages))
             target.write_text(text, encoding="utf-8")
-            pages.append(page)
             for name in DATA.findall("\n".join(cell.source for cell in notebook.cells)):
                 (folder / "data").mkdir(exist_ok=True)
                 shutil.copyfile(root / "book" / "data" / name, folder / "data" / name)
@@ -73,4 +75,4 @@ def write(root: Path, site: Path, mirror: str, store: Path, out: Path) -> list[s
         part.rename(out)
     finally:
         shutil.rmtree(part, ignore_errors=True)
-    return pages
+    return list(pages)

@@ -16,6 +16,7 @@ import linecache
 import marshal
 import os
 import pickle
+import re
 import sys
 import time
 import traceback
@@ -29,6 +30,8 @@ os.environ["MPLBACKEND"] = "Agg"
 BARE = {"__name__": "__main__"}
 # of a class: what Python keeps beside its content
 WITHOUT_CONTENT = {"__dict__", "__weakref__", "__doc__", "__module__", "__slotnames__"}
+# Python and numpy say in these words of 2 GB and more that nobody can even ask for them
+TOO_BIG = re.compile("index-sized integer|array is too big|Maximum allowed dimension exceeded")
 GONE = object()  # a name that a cell deleted
 space = dict(BARE)
 made: dict[str, dict] = {}  # what each cell gave to names when it ran last
@@ -483,7 +486,7 @@ def _tell(error, tree, name: str, emit) -> None:
             inside = inside.tb_next
         lines = traceback.format_exception(type(error), error, inside)
         emit("error", "".join(lines))
-        if isinstance(error, MemoryError) or "index-sized" in str(error):  # 2 GB and more
+        if isinstance(error, MemoryError) or TOO_BIG.search(str(error)):
             emit("memory", "")
             return
         if blocked:  # what a cell above did not do may be missed in many ways

@@ -3,12 +3,13 @@
 (() => {
   const island = document.getElementById("live-page");
   if (!island) return;
-  const { cells, data, megabytes, notebook } = JSON.parse(island.textContent);
+  const { cells, data, megabytes, notebook, pages: known } = JSON.parse(island.textContent);
   const home = new URL(".", document.currentScript.src);
   const KEYS = "live:"; // one a page
   const MINE = KEYS + location.pathname;
   const FOLDER = MINE.slice(0, MINE.lastIndexOf("/") + 1); // the book's: a server may have others
-  const REACT = "live-react";
+  const ROOT = new URL("../../", home).pathname; // the site's
+  const [REACT, QUIZ] = [`live-react:${ROOT}`, `quiz:${ROOT}`];
   const EXTENTS = `live-extents:${FOLDER.slice(KEYS.length)}`;
   const FORMAT = "direct-drive-work-1";
 
@@ -49,10 +50,13 @@
       return false;
     }
   };
-  const isPair = (c) => Array.isArray(c) && c.length === 2 && c.every((t) => typeof t === "string");
+  // Of each cell the book's code and the reader's, and of code from a file a third word: it was
+  // "opened", and the book's runs in its place, until it is "accepted".
+  const isText = (t) => typeof t === "string";
+  const isChange = (c) => Array.isArray(c) && [2, 3].includes(c.length) && c.every(isText);
   const work = (record) => ({
-    changes: Object.fromEntries(Object.entries(record?.changes ?? {}).filter(([, c]) => isPair(c))),
-    solved: Array.isArray(record?.solved) ? record.solved : [],
+    changes: Object.fromEntries(Object.entries(record?.changes ?? {}).filter(([, c]) => isChange(c))),
+    solved: Array.isArray(record?.solved) ? record.solved.filter(isText) : [],
   });
   let mine = work(read(MINE));
   try {
@@ -63,13 +67,11 @@
 
   // Extents that the reader picked in one lesson, for those that follow: the text of a file.
   let extents = read(EXTENTS);
-  const picked = () => {
-    const kept = blocked ? extents : read(EXTENTS);
-    return typeof kept === "string" ? kept : "";
-  };
+  const asExtents = (text) => (isText(text) && /^[\d\s.,[\]e+-]{0,999}$/.test(text) ? text : "");
+  const picked = () => asExtents(blocked ? extents : read(EXTENTS));
   function pick(text) {
-    extents = text;
-    write(EXTENTS, text || null);
+    extents = asExtents(text);
+    write(EXTENTS, extents || null);
   }
 
   // Another tab may have written since: only what was changed in this one is written over it. What
@@ -77,10 +79,10 @@
   function remember() {
     const there = work(read(MINE) ?? (blocked ? mine : undefined));
     const touched = cells.filter((c) => c.area && c.area.value !== c.written);
-    for (const { id, source, area } of touched) {
+    for (const { id, source, area, from } of touched) {
       const before = there.changes[id];
       if (before && before[0] !== source) there.changes[`${id}, earlier`] = before;
-      if (area.value !== source) there.changes[id] = [source, area.value];
+      if (area.value !== source) there.changes[id] = [source, area.value, from].filter(Boolean);
       else delete there.changes[id];
     }
     there.solved = [...new Set([...there.solved, ...mine.solved])];
@@ -92,26 +94,39 @@
     return cells.some((c) => c.area && c.area.value !== c.source);
   }
 
-  // --- the bar above the first cell ---
+  // --- one button in the page's header, and its state beside it ---
   cells.forEach((cell, place) => {
     cell.el = document.querySelector(`[data-live="${cell.id}"]`);
     Object.assign(cell, { place, shown: cell.source, turn: 0, last: 0, asBuilt: cell.names });
   });
-  const bar = make("section", { class: "live-bar", "aria-label": "Run this page" });
-  const status = make("p", { class: "live-status", role: "status" });
-  const progress = make("div", {
-    role: "progressbar",
-    class: "live-progress",
-    "aria-label": "Loading Python",
-    "aria-valuemin": 0,
-    "aria-valuemax": 100,
-    hidden: "",
-  });
-  progress.append(make("span"));
-  const begin = button("Run this page", "", () => start());
-  const follows = button("Run what follows", "Run what follows from your changes", () => followUp());
-  const all = button("Run all", "", () => enqueue(cells, true));
-  const stop = button("Stop", "Stop what runs", () => halt());
+  const status = make("span", { class: "live-status", role: "status" });
+  const press = button("Run this page", "", () => act());
+  press.title = `Change this page's code and run it: loads ${megabytes[0]} to ${megabytes[1]} MB from this site`;
+  document.querySelector(".article-header-buttons").prepend(status, press);
+  const say = (text) => {
+    if (status.textContent === text) return; // it is read out at each change
+    status.textContent = text;
+    status.classList.toggle("live-long", text.length > 40);
+  };
+  const calm = (text) => [text, blocked && "this browser keeps no changes"].filter(Boolean).join(": ");
+  // What the button does follows what there is to do.
+  let act = () => start();
+  let stale = 0; // cells that may be out of date
+  const isOn = () => "live" in document.documentElement.dataset;
+  function face() {
+    if (!isOn()) return;
+    const busy = running || waiting.size;
+    document.documentElement.dataset.live = busy ? "running" : "idle";
+    const [words, does, title] = busy
+      ? ["Stop", halt, "Stop what runs"]
+      : stale
+        ? ["Run what follows", followUp, "Run what follows from your changes"]
+        : ["Run all", () => enqueue(cells, true), "Run all cells of this page"];
+    act = does;
+    if (press.textContent !== words) press.textContent = words;
+    press.title = title;
+  }
+
   const reset = button("Reset", "Reset: code and output as in the book", () => asBuilt());
   const react = make("input", { type: "checkbox", role: "switch", id: "live-react" });
   react.checked = read(REACT) === true;
@@ -141,7 +156,8 @@
     make(
       "p",
       {},
-      "Your changes and the exercises that you solved stay on this device. Nothing is sent.",
+      "Your changes and the exercises that you solved stay on this device. Nothing is sent. A small script " +
+        "stays, too, which lets this site's pages stop Python at once. “Erase” takes all of it.",
     ),
     button("Save as a file", "Save as a file: your work on all pages of the book", () => takeOut()),
     button("Open a file", "Open a file with your work", () => chosen.click()),
@@ -173,11 +189,14 @@
     heardOf.textContent = "A file with your work on all pages of the book was saved.";
   }
 
+  // What somebody else wrote is a program. It is asked for, and shown; none of it runs with the rest.
+  const LARGEST = 1_000_000; // bytes: all work on all pages is less
+  const DISGUISED = /[\u202a-\u202e\u2066-\u2069]/; // signs that show code in another order than it has
   async function takeIn(file) {
     chosen.value = "";
     let content;
     try {
-      content = JSON.parse(await file.text());
+      if (file.size <= LARGEST) content = JSON.parse(await file.text());
     } catch {
       content = undefined;
     }
@@ -187,65 +206,65 @@
     }
     remember();
     const here = MINE.slice(FOLDER.length);
-    const both = Object.entries(content.pages).map(([page, theirs]) => ({
-      page,
-      own: page === here ? mine : work(read(FOLDER + page)),
-      other: work(theirs),
-    }));
-    const differ = both.flatMap(({ own, other }) =>
-      Object.keys(other.changes).filter((id) => own.changes[id] && own.changes[id][1] !== other.changes[id][1]),
-    ); // prettier-ignore
-    const theirs = typeof content.extents === "string" ? content.extents : "";
+    const both = known.filter((page) => Object.hasOwn(content.pages, page)).map((page) => {
+      const own = page === here ? mine : work(read(FOLDER + page));
+      const { changes, solved } = work(content.pages[page]);
+      const theirs = Object.entries(changes).filter(
+        ([id, [, code]]) => own.changes[id]?.[1] !== code && !DISGUISED.test(code),
+      );
+      return { page, own, theirs, solved };
+    }); // prettier-ignore
+    const motions = asExtents(content.extents);
+    const every = both.flatMap(({ own, theirs }) => theirs.map(([id]) => own.changes[id]));
+    const over = every.filter(Boolean).length;
     const others = [
-      differ.length && `other code for ${many(differ.length, "cell")} that you changed here`,
-      theirs && picked() && theirs !== picked() && "other motions than you picked",
+      over && `your own code of ${many(over, "cell")}`,
+      motions && picked() && motions !== picked() && "the motions that you picked",
     ].filter(Boolean);
-    const ask = `The file has ${others.join(", and ")}. Take it in place of yours?`;
-    const over = !others.length || confirm(ask);
-    for (const { page, own, other } of both) {
-      const [first, last] = over ? [own, other] : [other, own];
-      const changes = { ...first.changes, ...last.changes };
-      const all = { changes, solved: [...new Set([...own.solved, ...other.solved])] };
+    const ask = [
+      `The file holds code for ${many(every.length, "cell")} on ${many(both.length, "page")}.`,
+      "None of it runs before you have pressed “Run” at its cell: read it first.",
+      others.length ? `Take it in place of ${others.join(", and ")}?` : "Take it?",
+    ];
+    if (!confirm(ask.join(" "))) return (heardOf.textContent = "Nothing was changed.");
+    for (const { page, own, theirs, solved } of both) {
+      const opened = theirs.map(([id, [from, code]]) => [id, [from, code, "opened"]]);
+      const changes = { ...own.changes, ...Object.fromEntries(opened) };
+      const all = { changes, solved: [...new Set([...own.solved, ...solved])] };
       if (page === here) mine = all;
       write(FOLDER + page, all);
     }
-    if (theirs && (over || !picked())) {
-      pick(theirs);
-      worker?.postMessage({ picked: theirs });
+    if (motions) {
+      pick(motions);
+      worker?.postMessage({ picked: motions });
     }
     for (const cell of cells) if (cell.area) setText(cell, keptText(cell));
     remember();
     mark();
-    const again = `Your work on ${many(both.length, "page")} is here again.`;
-    heardOf.textContent = blocked ? `Your work on this page is here again. ${keptNothing}` : again;
+    const taken = (count) => `The work on ${many(count, "page")} was taken.`;
+    heardOf.textContent = blocked ? `${taken(1)} ${keptNothing}` : taken(both.length);
   }
 
   function erase() {
-    if (!confirm("Erase your changes and what you solved, on all pages of this book?")) return;
+    if (!confirm("Erase your changes, what you solved and the quiz, on all pages of this book?")) return;
     try {
       for (const key of Object.keys(localStorage)) if (key.startsWith(FOLDER)) write(key, null);
     } catch {
       blocked = true;
     }
     mine = work();
+    write(QUIZ, null);
+    dispatchEvent(new StorageEvent("storage", { key: QUIZ })); // its questions hear of it
     pick("");
     worker?.postMessage({ picked: "" });
     write(REACT, null);
     react.checked = false;
+    navigator.serviceWorker?.getRegistration(ROOT).then((found) => found?.unregister());
     if (cells.some((c) => c.area)) asBuilt(true);
     tally();
     heardOf.textContent = "Your work on all pages of this book was erased.";
   }
 
-  const lacks = cells.filter((c) => c.needs).map((c) => c.needs);
-  status.textContent =
-    `Change the code of this page and run it, here in the browser. A click loads Python from ` +
-    `this site: ${megabytes[0]} MB, up to ${megabytes[1]} MB with all that cells import. The first ` +
-    `run takes half a minute more than the page says.` +
-    (lacks.length ? ` PyTorch's ${lacks.join(", ")} are not in a page: the notebook has them.` : "") +
-    (Object.keys(mine.changes).length ? " What you changed last time comes back with it." : "");
-  bar.append(begin, status, progress);
-  if (asked.length) bar.append(own);
   tally();
   const other = Object.keys(mine.changes).filter(
     (id) => mine.changes[id][0] !== cells.find((c) => c.id === id)?.source,
@@ -255,21 +274,23 @@
     heardOf.textContent =
       `The book has changed the code of ${many(other, "cell")} since you did. Your code is not ` +
       "shown here; “Save as a file” has it.";
-  // Beside the sections of the page, not in one: so it stays in view down to the last cell.
-  let spot = cells[0].el;
-  while (spot.parentElement.parentElement.closest("section")) spot = spot.parentElement;
-  spot.before(bar);
-
-  const say = (text) => {
-    if (status.textContent !== text) status.textContent = text; // it is read out at each change
-  };
+  if (asked.length) (asked[0].el.parentElement.querySelector(":scope > .rubric") ?? asked[0].el).before(own);
+  if (blocked) say(calm(""));
 
   // --- cells ---
-  const text = (cell) => cell.area?.value ?? cell.source;
-  const keptText = (cell) => {
-    const [from, changed] = mine.changes[cell.id] ?? [];
-    return from === cell.source && typeof changed === "string" ? changed : cell.source;
-  };
+  // What runs: of code that a file brought, the book's own until the reader has accepted it.
+  const text = (cell) => (cell.from === "opened" ? cell.source : (cell.area?.value ?? cell.source));
+  function keptText(cell) {
+    const [source, changed, from] = mine.changes[cell.id] ?? [];
+    cell.from = source === cell.source ? from : undefined;
+    return source === cell.source ? changed : cell.source;
+  }
+  function accept(cell) {
+    if (cell.from !== "opened") return;
+    cell.from = "accepted";
+    cell.written = undefined; // it is kept with that word
+    remember();
+  }
 
   function open(cell, number) {
     const input = cell.el.querySelector(".cell_input");
@@ -292,10 +313,12 @@
     cell.mark = make("span", { class: "live-mark" });
     cell.solved = make("span", { class: "live-solved" });
     const check = cell.kind === "check";
+    const run = () => {
+      accept(cell);
+      enqueue(withCheck(number));
+    };
     tools.append(
-      button(check ? "Check" : "Run", `${check ? "Check the answer" : "Run"}: ${cell.name}`, () =>
-        enqueue(withCheck(number)),
-      ),
+      button(check ? "Check" : "Run", `${check ? "Check the answer" : "Run"}: ${cell.name}`, run),
     );
     if (!check)
       tools.append(
@@ -337,7 +360,7 @@
     cell.area.addEventListener("keydown", (event) => {
       if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) {
         event.preventDefault();
-        enqueue(withCheck(number));
+        run();
       } else if (event.key === "Escape") indents = false;
       else if (event.key === "Tab" && indents && !event.shiftKey && !event.ctrlKey) {
         event.preventDefault();
@@ -353,6 +376,7 @@
 
   function fit(cell) {
     cell.area.rows = cell.area.value.split("\n").length;
+    if (cell.area.value === cell.source) cell.from = undefined;
     cell.el.classList.toggle("live-changed", cell.area.value !== cell.source);
     for (const update of cell.sliders ?? []) update();
   }
@@ -362,17 +386,19 @@
     fit(cell);
   }
 
-  const toRun = (count) =>
-    `${many(count, "cell")} may show what came before your change: press “Run what follows”.`;
+  const upToDate = () => calm(stale ? `${many(stale, "cell")} may be out of date` : "ready");
 
   function changed(cell) {
     fit(cell);
     remember();
-    if (blocked) heardOf.textContent = keptNothing;
-    const count = mark();
+    if (blocked) {
+      heardOf.textContent = keptNothing;
+      say(calm(""));
+    }
+    mark();
     clearTimeout(timer);
     if (react.checked) timer = setTimeout(followUp, 500);
-    else if (ready && !running) say(count ? toRun(count) : "All outputs are up to date.");
+    else if (ready && !running) say(upToDate());
   }
 
   // --- handles: the numbers of *Change this* ---
@@ -396,12 +422,7 @@
     return undefined;
   }
 
-  function written(value, { whole, step }) {
-    if (whole) return String(Math.round(value));
-    const digits = Math.max(1, Math.ceil(-Math.log10(step) - 1e-9));
-    const plain = value.toFixed(Math.min(digits, 12)).replace(/(\.\d+?)0+$/, "$1");
-    return plain;
-  }
+  const written = (value, { digits }) => value.toFixed(digits).replace(/(\.\d+?)0+$/, "$1");
 
   function sliders(cell) {
     cell.sliders = [];
@@ -423,7 +444,7 @@
         range.disabled = !spot;
         if (!spot) return (shown.textContent = "–");
         if (Number(range.value) !== spot.value) range.value = spot.value;
-        shown.textContent = written(spot.value, { ...handle, step: handle.step / 100 });
+        shown.textContent = spot.value;
         range.setAttribute("aria-valuetext", `${shown.textContent} ${handle.unit}`.trim());
       });
       return make("div", {}, make("label", { for: id }, name), range, shown);
@@ -445,26 +466,27 @@
       if (cell.handles) only.set(cell.place, follow.renamed(cell.shown, text(cell)));
     const first = cells.filter((c) => different.includes(c) || (c.stale && !c.needs));
     const later = follow.after(cells, follow.graph(cells), first.map((c) => c.place), only);
-    let count = 0;
+    stale = 0;
     for (const cell of cells) {
       if (!cell.mark) continue;
       const behind = cell.stale || later.has(cell.place);
       const words = different.includes(cell)
         ? "Changed, and not run since."
-        : behind
-          ? "May show what came before your change."
-          : "";
-      count += behind || different.includes(cell);
+        : cell.from === "opened"
+          ? "From a file: the book's own code runs in its place until you have read this and pressed “Run”."
+          : behind
+            ? "May show what came before your change."
+            : "";
+      stale += behind || different.includes(cell);
       if (cell.mark.textContent !== words) cell.mark.textContent = words;
       cell.el.classList.toggle("live-stale", behind);
     }
-    follows.disabled = !count;
-    return count;
+    face();
   }
 
   function followUp() {
     clearTimeout(timer);
-    if (!all.isConnected) return; // Python is not asked for yet
+    if (!isOn()) return; // Python is not asked for yet
     const first = cells.filter((c) => !c.needs && (text(c) !== c.shown || c.stale || c.failed));
     const graph = follow.graph(cells);
     const later = follow.after(cells, graph, first.map((c) => c.place));
@@ -540,10 +562,9 @@
     remember();
     clearTimeout(timer);
     drop();
-    meanwhile = "Code and output are the book's again. Python starts afresh.";
+    meanwhile = "the book's again: Python starts afresh";
     restart();
     mark();
-    document.documentElement.dataset.live = "idle";
   }
 
   // --- what comes from the worker ---
@@ -568,6 +589,10 @@
         " and run it on your own machine.",
       ],
       stopped: () => [`Stopped. ${text}`],
+      foreign: () => [
+        "A figure to handle is not shown after code from a file has run: its script would run in " +
+          "this page. “Reset” starts Python afresh.",
+      ],
       ended: () => [
         "Stopped. A cell that computes hears nothing, so Python was ended and starts afresh. " +
           "Your code and all other output stay; the next run first does again what it needs of " +
@@ -588,7 +613,7 @@
 
   // As MathJax is told to read them on the book's pages.
   const formulas = (text) =>
-    text.replaceAll("\\|", "|").replace(/(\$\$?)(.+?)\1/gs, (_, sign, tex) =>
+    text.replaceAll("\\|", "|").replaceAll("&lt;", "<").replace(/(\$\$?)(.+?)\1/gs, (_, sign, tex) =>
       sign === "$" ? `\\(${tex}\\)` : `\\[${tex}\\]`,
     );
 
@@ -609,9 +634,31 @@
     );
   }
 
+  // Of a Python in which code from a file ran, nobody knows what it makes even of the book's cells:
+  // HTML shows in a frame in which no script runs, and scripts of widgets do not come at all.
+  const FORMED = new Set(["html", "figure", "markdown", "latex", "widget"]);
+  function framed(kind, text) {
+    if (kind === "widget") return [note("foreign")];
+    if (kind === "markdown" || kind === "latex") return [printed(text, "text")];
+    const el = make("iframe", { sandbox: "allow-same-origin", class: "output", title: "Output" });
+    const styles = [...document.querySelectorAll('link[rel="stylesheet"]')].map((link) => link.outerHTML);
+    const own = `'unsafe-inline' ${location.origin}`;
+    const policy = `default-src 'none'; img-src data:; style-src ${own}; font-src ${location.origin}`;
+    const head = `<meta http-equiv="Content-Security-Policy" content="${policy}">${styles.join("")}`;
+    const theme = document.documentElement.dataset.theme ?? "light";
+    const body = `<body class="bd-article"><div class="live-output">${text}</div></body>`;
+    el.srcdoc = `<!doctype html><html data-theme="${theme}">${head}${body}</html>`;
+    el.addEventListener("load", () => {
+      const height = el.contentDocument.body.firstElementChild?.scrollHeight ?? 0;
+      el.style.blockSize = `${Math.min(height + 8, 2000)}px`;
+    });
+    return [el];
+  }
+
   function show(cell, kind, text) {
     const place = cell.output;
     if (kind === "again") return emptied(cell);
+    if (foreign && FORMED.has(kind)) return place.append(...framed(kind, text));
     if (kind === "text" || kind === "warning" || kind === "error") {
       const last = place.lastElementChild;
       if (last?.classList.contains(`live-${kind}`)) last.firstChild.append(text);
@@ -664,7 +711,9 @@
   }
 
   // --- the worker, and what is to be run ---
-  let worker, ready, running, expected, loaded, interrupts, turns, asking;
+  const runs = (cell) => `running ${cell.name}${cell.extra ? "" : ` of ${cells.length}`}`;
+  let foreign; // whether code from a file has run in this Python
+  let worker, ready, running, expected, loaded, interrupts, turns;
   let meanwhile = ""; // what is said while Python starts afresh and nobody waits for it
   let ran = 0; // cells, since something was asked for
   let spread = false; // whether what follows runs, too
@@ -678,17 +727,17 @@
 
   function boot() {
     worker = new Worker(new URL("worker.mjs", home), { type: "module" });
-    ready = false;
+    ready = foreign = false;
     loaded = turns = 0;
     for (const cell of cells) cell.turn = cell.last = 0;
     expected = megabytes[0] * 1e6;
-    progress.hidden = false;
     advance(0);
     const [began, mine] = [performance.now(), worker];
     worker.onmessage = ({ data: message }) => {
       if (mine !== worker) return;
       if (message.ready) patience = Math.max(3000, performance.now() - began);
-      heard(message);
+      if (message.lives) navigator.locks.request(message.lives, () => mine === worker && lost("it was ended"));
+      else heard(message);
     };
     worker.onerror = (event) => {
       event.preventDefault?.();
@@ -702,12 +751,9 @@
   function advance(bytes) {
     loaded += bytes;
     const share = Math.min(100, Math.round((100 * loaded) / expected));
-    progress.setAttribute("aria-valuenow", share);
-    progress.firstChild.style.inlineSize = `${share}%`;
-    const size = `${(loaded / 1e6).toFixed(0)} MB`;
-    progress.setAttribute("aria-valuetext", size);
-    if (!ready) say(meanwhile || (share < 100 ? "Loading Python …" : "Starting Python …"));
-    else if (running) say(`Running ${running.name}: loading what it imports …`);
+    press.style.setProperty("--loaded", `${share}%`);
+    if (!ready) say(meanwhile || "starting Python");
+    else if (running) say(`${runs(running)}: loading`);
   }
 
   // On a wide page a figure comes at once, in this form alone; the narrow one comes if it is needed.
@@ -721,20 +767,18 @@
   }
 
   function heard(message) {
+    if (foreign && (message.form || message.widget)) return;
     if (message.form) inBoth(message);
     else if (message.picked !== undefined) pick(message.picked);
     else if (message.widget) withHost(() => host.heard(message.widget, message.buffers));
     else if (message.bytes) {
-      progress.hidden = ready && !running;
       advance(message.bytes);
     } else if (message.ready) {
       ready = true;
-      progress.hidden = true;
       expected = megabytes[1] * 1e6;
-      say(meanwhile || "Python is ready.");
+      say(meanwhile || upToDate());
       next();
     } else if (message.failed) lost(message.failed);
-    else if (message.began) clearTimeout(asking);
     else if (message.kind === "moved") moved(message.names);
     else if (message.done) finish(message);
     else if (running && message.run === running.name) {
@@ -769,8 +813,6 @@
 
   // The worker is gone: the page goes on, and the next run has another one.
   function lost(why) {
-    clearTimeout(asking);
-    progress.hidden = true;
     drop();
     ended();
     if (running) {
@@ -779,7 +821,6 @@
       if (!running.extra) running.failed = true;
     }
     running = undefined;
-    document.documentElement.dataset.live = "idle";
     say(`Python ${ready ? "broke off" : "did not start"}: ${why}.`);
     mark();
   }
@@ -835,13 +876,11 @@
   function next() {
     if (!ready || running) return;
     running = prepared();
-    if (!running) {
-      document.documentElement.dataset.live = "idle";
-      return;
-    }
+    if (!running) return face();
     waiting.delete(running);
     const cell = running;
     cell.sent = text(cell);
+    foreign ||= Boolean(cell.from) && cell.sent !== cell.source;
     cell.quiet = !cell.asked && !cell.stale && !cell.failed && cell.sent === cell.shown && !cell.widget;
     cell.failed = cell.cancelled = cell.stopping = false;
     cell.news = undefined;
@@ -849,21 +888,18 @@
     if (!cell.quiet) fresh(cell);
     cell.el.classList.add("live-running");
     if (cell.time && !cell.quiet) cell.time.textContent = "running …";
-    say(`Running ${cell.name} of ${cells.length} …`);
+    say(runs(cell));
     host?.flush();
     const above = cells.slice(0, cell.place).filter((c) => c.turn).map((c) => c.name);
     const how = { keep: !cell.extra, quiet: cell.quiet, wide: !slim.matches };
-    worker.postMessage({ run: cell.name, source: cell.sent, above, how });
     if (interrupts) interrupts[0] = 0;
-    const mine = worker; // an idle worker answers at once: or it is no more
-    asking = setTimeout(() => mine === worker && lost("it does not answer"), 30_000);
+    worker.postMessage({ run: cell.name, source: cell.sent, above, how });
   }
 
   function finish({ seconds, ok }) {
     const cell = running;
     running = undefined;
-    clearTimeout(asking);
-    progress.hidden = true;
+    press.style.removeProperty("--loaded");
     released(cell, cell.quiet ? cell.time?.textContent : `${seconds.toFixed(1)} s`);
     if (cell.cancelled && !ok) {
       cell.stale = true;
@@ -873,18 +909,11 @@
     } else if (!cell.extra) settled(cell);
     if (cell.failed) drop();
     cell.asked = false;
-    const count = mark();
-    const marked = count ? ` ${toRun(count)}` : "";
+    mark();
     ran += !cell.quiet;
     if (!waiting.size) {
-      const title = cell.name.replace(/^./, (c) => c.toUpperCase());
-      const name = ran === cells.length ? "All cells have" : ran > 1 ? `${ran} cells have` : `${title} has`;
-      const ask = react.checked ? "Now change a number." : "Now change a number, and press “Run what follows”.";
-      say(
-        cell.failed
-          ? `${cell.stopping ? "Stopped" : "An error"} in ${cell.name}.${marked}`
-          : `${name} run.${ran === cells.length && !count ? ` ${ask}` : marked}`,
-      );
+      const first = ran === cells.length && !stale ? "ready: now change a number" : upToDate();
+      say(cell.failed ? `${cell.stopping ? "stopped" : "an error"} in ${cell.name}` : first);
       ran = 0;
     }
     next();
@@ -939,7 +968,6 @@
   }
 
   function enqueue(more, on = false) {
-    document.documentElement.dataset.live = "running";
     meanwhile = "";
     spread = on;
     for (const cell of more) {
@@ -947,6 +975,7 @@
       waiting.add(cell);
     }
     if (!worker) boot();
+    face();
     next();
   }
 
@@ -975,7 +1004,6 @@
 
   function restart(time = "") {
     ended();
-    clearTimeout(asking);
     if (running) released(running, time);
     running = undefined;
     boot();
@@ -988,13 +1016,12 @@
     if (!cell) return ready || asBefore();
     cell.stopping = true;
     const end = () => {
-      if (running !== cell) return;
+      if (running !== cell || !cell.stopping) return;
       cell.output.append(note("ended"));
       if (!cell.extra) cell.failed = true;
-      meanwhile = "Stopped. Python starts afresh.";
+      meanwhile = "stopped: Python starts afresh";
       restart("stopped");
       mark();
-      document.documentElement.dataset.live = "idle";
     };
     if (ask()) setTimeout(end, 3000);
     else end();
@@ -1003,15 +1030,36 @@
   // Stopped before Python was there: what was to be run waits for a click.
   function asBefore() {
     for (const cell of cells) cell.asked = false;
-    meanwhile = "Stopped. Python is being loaded, and nothing runs.";
+    meanwhile = "stopped before the first cell";
     say(meanwhile);
-    document.documentElement.dataset.live = "idle";
+    face();
   }
 
-  function start() {
+  // In a page that shares memory with its worker, Stop is heard at once. For that a page needs two
+  // headers, which isolate.js adds from the next load on. Without, Stop ends Python, and says so.
+  const AGAIN = `live-again:${ROOT}`; // the page is loaded once more, and then begins by itself
+  async function isolate() {
+    try {
+      if (isolated || sessionStorage.getItem(AGAIN)) return false;
+      await navigator.serviceWorker.register(`${ROOT}isolate.js`);
+      await Promise.race([navigator.serviceWorker.ready, new Promise((_, no) => setTimeout(no, 3000))]);
+      sessionStorage.setItem(AGAIN, "1");
+      location.reload();
+      return true;
+    } catch {
+      return false; // an old browser, a private window, or a page that came without encryption
+    }
+  }
+  try {
+    if (sessionStorage.getItem(AGAIN)) start().then(() => sessionStorage.removeItem(AGAIN));
+  } catch {
+    // there is no such storage
+  }
+
+  async function start() {
     if (location.protocol === "file:") {
-      say("");
-      status.append(
+      status.classList.add("live-long");
+      status.replaceChildren(
         "A browser runs Python only in pages that come from a server, not from a folder. In the " +
           "folder of this site run ",
         make("code", {}, "python -m http.server"),
@@ -1021,18 +1069,14 @@
       );
       return;
     }
+    say("starting Python");
+    if (isOn() || (await isolate())) return;
     cells.forEach(open);
     tally();
-    begin.replaceWith(follows, all, stop, reset, reacts);
-    bar.classList.add("live-on");
-    bar.after(
-      make(
-        "p",
-        { class: "live-keys", id: "live-keys" },
-        "Ctrl+Enter runs a cell. Tab indents after you typed; Escape, then Tab, leaves the code.",
-      ),
-    );
-    all.focus();
+    document.documentElement.dataset.live = "running";
+    const keys = "Ctrl+Enter runs a cell. Tab indents after you typed; Escape, then Tab, leaves the code.";
+    const rest = make("div", { class: "live-rest" }, reacts, reset, make("p", { id: "live-keys" }, keys));
+    (cells.find((c) => c.handles) ?? cells[0]).el.before(rest);
     mark();
     enqueue(cells, true);
   }

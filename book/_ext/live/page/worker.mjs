@@ -1,4 +1,4 @@
-// Python in a worker of its own: the page stays quick, and to stop means to end the worker.
+// Python in a worker of its own: the page stays quick.
 import { loadPyodide } from "./pyodide/pyodide.mjs";
 
 const here = (path) => new URL(path, import.meta.url).href;
@@ -18,6 +18,13 @@ self.fetch = async (...request) => {
   const { headers, status } = answer; // WebAssembly is compiled as it comes by its content type
   return new Response(answer.body.pipeThrough(count), { headers, status });
 };
+
+// While it lives it holds a lock. The page waits for that, and knows at once if the worker is no more.
+const life = `live-${Math.random()}`;
+self.navigator.locks?.request(life, () => {
+  tell({ lives: life });
+  return new Promise(() => {});
+});
 
 const MODULES = ["names.py", "kernel.py"];
 // Modules of this site that stand in for others.
@@ -42,6 +49,13 @@ function pick(text = "") {
   else if (pickedNow()) python.FS.unlink(KEPT_IN);
 }
 
+// Cells have no way to what other pages of this site's address keep.
+function shut() {
+  const gone = { indexedDB: self, caches: self, BroadcastChannel: self, Worker: self, storage: self.navigator };
+  for (const [name, holder] of Object.entries(gone))
+    for (let at = holder; at; at = Object.getPrototypeOf(at)) delete at[name];
+}
+
 async function start(data) {
   const lock = here("pyodide/pyodide-lock.json");
   const [found, ...files] = await Promise.all([lock, ...MODULES, ...data].map(file));
@@ -52,13 +66,14 @@ async function start(data) {
     lockFileURL: lock,
     convertNullToNone: true,
   });
-  await python.loadPackage(["numpy", "ddlib"], quiet);
+  await load(["numpy", "ddlib"]);
   python.FS.mkdirTree("/book/data");
   python.FS.chdir("/book"); // where a notebook of the book runs
   [...MODULES, ...data].forEach((path, k) =>
     python.FS.writeFile(`/book/${path}`, new Uint8Array(files[k])),
   );
   python.runPython("import sys; sys.path.insert(0, '/book')");
+  shut();
   kernel = python.pyimport("kernel");
   kernel.start(python.runPython(PAUSE));
   kernel.page = (text, buffers) => tell({ widget: JSON.parse(text), buffers: buffers.toJs() });
@@ -86,7 +101,13 @@ def pause():
 pause
 `;
 
-const quiet = { messageCallback() {}, errorCallback() {} };
+// Packages, by their hashes in the lock. Pyodide itself only writes down which of them it refused.
+async function load(names) {
+  const refused = [];
+  const errorCallback = (text) => refused.push(text);
+  await python.loadPackage(names, { messageCallback() {}, errorCallback });
+  if (refused.length) throw new Error(`a package did not come whole (${refused[0].split("\n")[0]})`);
+}
 
 // Get the package in which a module lies, once; whether there is one.
 const asked = new Set();
@@ -103,7 +124,7 @@ async function get(module) {
   }
   const name = Object.keys(packages).find((key) => packages[key].imports.includes(module));
   if (!name) return false;
-  await python.loadPackage(name, quiet);
+  await load(name);
   return true;
 }
 
@@ -130,7 +151,6 @@ async function act(message) {
     }
     if (!run) return pick(message.picked);
     wanted = false;
-    tell({ began: run });
     const began = performance.now();
     const show = (kind, text) => tell({ run, kind, text });
     const ok = await kernel.run.callKwargs(source, run, show, get, {
@@ -140,6 +160,10 @@ async function act(message) {
     if (pickedNow() !== picked) tell({ picked: (picked = pickedNow()) });
     tell({ run, done: true, ok, seconds: (performance.now() - began) / 1000 });
   } catch (error) {
+    if (run && error.type === "KeyboardInterrupt") {
+      tell({ run, kind: "stopped", text: "" });
+      return tell({ run, done: true, ok: false, seconds: 0 });
+    }
     tell({ failed: `${error.message ?? error}` });
   }
 }
