@@ -278,7 +278,7 @@ def test_a_handed_out_notebook_is_seen_before_it_runs_and_after_it_was_saved(bui
     assert all(pictures.evaluate_all("(all) => all.map((one) => one.naturalWidth > 100)"))
     handle = handles(roots.first)[0]
     way_of(handle)[1](page, handle)
-    run(page, [2])  # the first widget; the second stays the book's
+    run(page, [1])  # the first widget; the second stays the book's
     slider = roots.first.locator(SLIDER).first
     slider.press("ArrowRight")
     value = slider.input_value()

@@ -129,6 +129,11 @@ def _quoted() -> None:
     parts = decompose(row)
     for name, value in zip(("constant", "even", "odd"), parts):
         quote(f"filters-row-{name}", float(np.ravel(value)[-1]))
+        if name != "constant":
+            quote(f"filters-row-{name}-energy", 100 * float((value**2).sum() / (row**2).sum()))
+    for layer, of, end in (("hidden", 0, ""), ("direct", 2, "-direct")):
+        heard = np.mean(trial.row(21)["real"][layer]["strongest"], axis=0)
+        quote(f"filters-follow{end}", 100 * heard[of])
     constant = shares(results.networks(21).weights.hidden_weights)[..., 0]
     quote("filters-constant", 100 * float(np.median(constant)))
 

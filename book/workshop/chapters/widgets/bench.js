@@ -275,7 +275,9 @@ function build({ model, el }) {
       const told = !playing && Math.abs(first) + Math.abs(last) > 0.25 * tall;
       put(band.arc, { d: told ? `M${xOf(0)} ${top + 4}C${xOf(3)} ${top - 8} ${xOf(n - 4)} ${top - 8} ${xOf(n - 1)} ${top + 4}` : "M0 0" });
       put(band.pair, { x: (at.x0 + at.x1) / 2, y: top + 7, class: "pair x" });
-      write(band.pair, told ? `${numberOf(first)} ${last < 0 ? "−" : "+"} ${numberOf(Math.abs(last))} = ${numberOf(first + last)}` : "");
+      const [a, both] = [first, first + last].map((value) => Number(value.toFixed(digits())));
+      const b = both - a; // the second as printed, so that the sum closes
+      write(band.pair, told ? `${numberOf(a)} ${b < 0 ? "−" : "+"} ${numberOf(Math.abs(b))} = ${numberOf(both)}` : "");
       // the row's part, small
       const thumb = largest([...parts.even, ...parts.odd]) / 10;
       const spot = (k) => 2 + 4.2 * k;
@@ -311,10 +313,10 @@ function build({ model, el }) {
       const leak = largest(constant.got) > 0.1 * highest ? " The constant lets the position leak in." : "";
       return `Dashed: the joint’s speed and its acceleration, each times a number. They explain ${share(odd.told)} of the odd jar and ${share(even.told)} of the even jar.${leak}`;
     }
-    if (get("lift") === reach.lift / 2 && !get("tilt") && !get("bend")) return "What agrees with its mirror image is the even half, what opposes it the odd half. Now move the wire.";
+    if (!get("lift") && !get("tilt") && !get("bend")) return "What agrees with its mirror image is the even half, what opposes it the odd half. Now move the wire.";
     const moved = Object.keys(WIRE).filter((name) => Math.abs(get(name)) > 0.02 * reach[name]);
     const words = { lift: "Lifted: the joint stands still.", tilt: "Tilted: a steady speed.", bend: "Bent: the joint speeds up." };
-    const what = moved.length === 1 ? words[moved[0]] : moved.length ? "Several at once." : "The joint stands at zero.";
+    const what = moved.length === 1 ? words[moved[0]] : "Several at once.";
     const filled = bands.filter(({ name }) => Math.abs(sum(parts[name].map((f, k) => f * path[k] * RAD))) > 0.1 * most);
     const names = filled.map(({ name }) => name);
     if (!names.length) return `${what} No jar gets much.`;

@@ -42,7 +42,7 @@ class FoldBench(PageWidget):
 
     row = t.Unicode(help="label of the row").tag(sync=True)
     fold = t.Float(0.08, min=0.0, max=1.0, help="from 0, flat, to 1, folded over").tag(sync=True)
-    lift = t.Float(REACH["lift"] / 2, help="angle in the window's centre, °").tag(sync=True)
+    lift = t.Float(0.0, help="angle in the window's centre, °").tag(sync=True)
     tilt = t.Float(0.0, help="speed in the window's centre, °/s").tag(sync=True)
     bend = t.Float(0.0, help="acceleration, °/s²").tag(sync=True)
 
@@ -90,7 +90,7 @@ def _still(f, step, alt) -> str:
         strip.plot(x, f, "o", ms=4, color=TONES["network"])
         strip.axvline(0, color=INK, linestyle="--", linewidth=0.8)
         strip.set(title="The row: fold it here", yticks=[])
-        wire.plot(x, np.full(f.size, REACH["lift"] / 2), "o-", ms=3, color=TONES["shoulder"])
+        wire.plot(x, np.zeros(f.size), "o-", ms=3, color=TONES["shoulder"])
         wire.set(title="The joint: its angle, °", xlabel="time from the centre, ms")
         wire.set_ylim(-10, 10)
 
