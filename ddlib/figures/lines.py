@@ -254,7 +254,7 @@ def by_case(
     _check_look(alt, height)
 
     def draw(figure: Figure):
-        axes = figure.subplots(len(cases), 1, sharex=True, squeeze=False)[:, 0]
+        axes = figure.subplots(len(cases), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
         for axis, (case, values) in zip(axes, cases.items()):
             axis.plot(x, values, color=INK)
             axis.set(title=case, ylabel=check_label(y_label))
