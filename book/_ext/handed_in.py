@@ -16,6 +16,8 @@ from shutil import which
 from tempfile import mkdtemp
 
 import nbformat
+from nbconvert.preprocessors.sanitize import SanitizeHTML
+from nbgrader.converters import Autograde
 from nbgrader.preprocessors import NbGraderPreprocessor
 from solved import IMPORT, changed, settings_of, variant_of, with_settings
 
@@ -94,6 +96,18 @@ class Restore(NbGraderPreprocessor):
         return restored(nb, own_copy(given, about["student"]), settings), resources
 
 
+class Tame(SanitizeHTML):
+    """Afterwards: no script of a student's runs in the browser of who reads marks or feedback."""
+
+    enabled = True
+
+    def preprocess_cell(self, cell, resources, index):
+        if cell.cell_type != "markdown":
+            return super().preprocess_cell(cell, resources, index)
+        cell.source = re.sub(r"<(?=[a-zA-Z/!?])", "< ", cell.source)  # no tag, but still a formula
+        return cell, resources
+
+
 def configure(c):
     """Settings of nbgrader for a course of this book."""
     c.CourseDirectory.course_id = "direct-drive-arm"
@@ -105,12 +119,9 @@ def configure(c):
     c.ClearSolutions.code_stub = {"python": "# Write your answer above this line."}
     c.ClearSolutions.text_stub = "(Your words.)"
     c.Execute.timeout = SECONDS
-    c.Autograde.sanitize_preprocessors = [
-        "nbgrader.preprocessors.ClearOutput",
-        Restore,
-        *map("nbgrader.preprocessors.{}".format, ("OverwriteKernelspec", "OverwriteCells")),
-        "nbgrader.preprocessors.CheckCellMetadata",
-    ]
+    before, marked = Autograde.sanitize_preprocessors, Autograde.autograde_preprocessors
+    c.Autograde.sanitize_preprocessors = [Restore, *before.default()]
+    c.Autograde.autograde_preprocessors = [*marked.default(), Tame]
     if which("bwrap"):
         os.environ["JUPYTER_PATH"] = str(BOX)
         c.Execute.kernel_name = "boxed"
@@ -127,7 +138,7 @@ def written(path: Path) -> dict[str, dict[str, str]]:
     if content["format"] != FORMAT:
         raise ValueError(f"its format is {content['format']!r}")
     return {
-        page.removesuffix(".html"): {name: code for name, (_, code) in of["changes"].items()}
+        page.removesuffix(".html"): {cell: change[1] for cell, change in of["changes"].items()}
         for page, of in content["pages"].items()
     }
 

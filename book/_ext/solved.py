@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ast
 import io
+import re
 from collections.abc import Mapping
 from contextlib import chdir, redirect_stdout
 from dataclasses import dataclass
@@ -182,8 +183,9 @@ def solve(
 
     matplotlib.use("Agg")
     notebook = changed(nbformat.read(path, as_version=4), settings)
-    found = exercises(notebook)
-    found = found[only - 1 : only] if only else found
+    every = exercises(notebook)
+    found = every[only - 1 : only] if only else every
+    imports = re.findall(r"(?m)^from .* import check$", "\n".join(one.check for one in every))
     opened = [c.source for c in notebook.cells if is_open(c) and not is_starter(c)]
     statements = [node for source in opened for node in ast.parse(source).body]
     if not whole:
@@ -191,6 +193,7 @@ def solve(
         statements = needed(statements, _Uses(own).reads)
     space, solved = {"__name__": "__main__"}, []
     with chdir(DATA), redirect_stdout(io.StringIO()):
+        exec("\n".join(imports), space)  # the first check's, which the others may use
         exec(compile(ast.Module(statements, []), str(path), "exec"), space)
         for exercise in found:
             exec(exercise.starter, space)

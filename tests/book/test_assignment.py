@@ -208,6 +208,27 @@ def test_a_variant_of_each_lesson_is_solved(name):
     assert found and all(one.said.startswith("Right") for one in found)
 
 
+LECTURES = (
+    (ROOT / "book" / "teaching.md").read_text("utf-8").partition("## A class on one lesson")[0]
+)
+HOMEWORK = [
+    (name, int(number))
+    for name, numbers in re.findall(r"\{exercise\}`([\w-]+): ([\d, ]+)`", LECTURES)
+    for number in numbers.split(", ")
+]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name, number", HOMEWORK)
+def test_homework_differs_from_student_to_student(name, number):
+    """What the book prints is wrong with other settings."""
+    book, own = (
+        solved.solve(variants.path(name), solved.settings_of(name, k), only=number)[0]
+        for k in (0, 7)
+    )
+    assert not own.takes(book.answer)
+
+
 def test_settings_take_the_place_of_others():
     cell = "a, b = (1.0, 2.0), 3  # m, 1\nc = f(4)  # as ü\nd = 5"
     made = solved.with_settings(cell, {"b": "33", "c": "g(1)"})
@@ -279,6 +300,10 @@ def test_nbgrader_from_release_to_export(tmp_path):
     named["cy"]["settings"].source = given["settings"].source
     named["cy"]["feedback-one"].source = "mine = 5.3 / (1.5 * 0.002)"
     named["cy"]["check-2"].source = "print('Right')"
+    named["cy"]["how-1"].source += "\n\n$a<b$ <img src=x onerror=alert(1)>"
+    named["cy"][
+        "feedback-one"
+    ].source += "\ndisplay({'text/html': '<script>alert(1)</script>'}, raw=True)"
     made["cy"].cells.remove(named["cy"]["check-3"])
     for name in ("ada", "bo", "cy"):
         (submitted / name / "feedback").mkdir(parents=True)
@@ -314,4 +339,4 @@ def test_nbgrader_from_release_to_export(tmp_path):
         marks = {row["student_id"]: float(row["score"]) for row in csv.DictReader(file)}
     assert marks == {"ada": 4 + 3 + 2, "bo": 0, "cy": 0, "dee": 1 + 2, "eve": 0}
     feedback = (course / "feedback" / "cy" / "feedback" / "feedback.html").read_text("utf-8")
-    assert "Wrong" in feedback
+    assert "Wrong" in feedback and not re.search(r"<img src=x|<script>alert", feedback)

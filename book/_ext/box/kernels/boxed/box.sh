@@ -3,8 +3,8 @@
 prefix=$1 connection=$2
 course=$(dirname "$(dirname "$(dirname "$PWD")")")
 python=$("$prefix/bin/python" -c 'import sys; print(sys.base_prefix)')
-ulimit -f 200000 # KB a file
-ulimit -v 16000000 # KB of memory
+ulimit -f 200000 # blocks of 512 bytes: a file
+ulimit -v 16000000 # KB: the memory
 exec bwrap --die-with-parent --unshare-all --ro-bind / / --dev /dev --proc /proc \
   --tmpfs /tmp --tmpfs "$HOME" --tmpfs "$course" --bind "$PWD" "$PWD" \
   --ro-bind "$python" "$python" --ro-bind "$prefix" "$prefix" \
