@@ -252,7 +252,7 @@ def notebook(path: Path, varied: bool = False):
             found = re.findall("^##+ .+$", head, re.MULTILINE)
             told = found[-1] if found and not below else told
             if own:
-                below = True
+                below, told = True, ""
                 cells += _formulas(words) + _quiz(words, questions(ROOT, f"book/{name}"))
                 cells.append(_cell("markdown", OWN.strip()))
                 texts = asked(lesson)
@@ -269,7 +269,7 @@ def notebook(path: Path, varied: bool = False):
             said = _between("SOLUTION", _quoted(words, explained[count - 1]))
             text = f"{HOW.format(count)}\n\n{said}"
             cells.append(_cell("markdown", text, f"how-{count}", True, POINTS["how"]))
-        elif not below and is_open(cell):
+        elif is_open(cell):
             settings = CHANGE_THIS in cell.metadata.get("tags", ())
             told += f"\n\n{LEAVE}" * settings
             cells += [_cell("markdown", told)] if told else []
