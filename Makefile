@@ -41,7 +41,7 @@ comma := ,
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
-.PHONY: help env lock book page test unmeasured lint stripped unit notebooks foreign foreign-ci pages lab live colab firefox pdf epub release assignment grade reproduce bench check mutants strip clean
+.PHONY: help env lock book page test unmeasured lint stripped unit notebooks foreign foreign-ci pages lab live colab firefox pdf epub release assignment collect reproduce bench check mutants strip clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
@@ -156,14 +156,14 @@ else
 endif
 
 LESSON ?=
-VARIANT ?= 0
-assignment: $(READY)  ## a folder to hand out, and its key: LESSON=feedback (or all), VARIANT=7
-	@$(WORKSHOP) book/_ext/assignment.py "$(LESSON)" "$(VARIANT)"
+COURSE ?= _build/course
+ROSTER ?=
+assignment: $(TESTED)  ## for nbgrader, with keys: LESSON=feedback (or all), ROSTER=students.csv
+	@$(WORKSHOP) book/_ext/assignment.py "$(LESSON)" "$(COURSE)" "$(ROSTER)"
 
-FOLDER  ?=
-MINUTES ?= 5
-grade: $(READY)  ## a table of returned notebooks: FOLDER=returned, at most MINUTES=5 for each
-	@$(WORKSHOP) book/_ext/grade.py "$(FOLDER)" --minutes "$(MINUTES)" --jobs "$(JOBS)"
+FOLDER ?=
+collect: $(TESTED)  ## notebooks of the assignments from pages' work files: FOLDER=returned
+	@$(WORKSHOP) book/_ext/handed_in.py "$(FOLDER)" "$(COURSE)"
 
 MIRROR ?=
 LIVE = PYTHONPATH="$$PWD/book/_ext" $(BIN)/python -m live --mirror "$(MIRROR)"
@@ -210,6 +210,7 @@ bench: $(READY)  ## speed, as ratios measured in one run
 strip: $(TESTED)  ## remove outputs from the notebooks before a commit
 	$(STRIP) $(NOTEBOOKS)
 
-clean:  ## remove what was built; .venv stays
-	rm -rf _build build dist mutants .pytest_cache .ruff_cache .hypothesis
+clean:  ## remove what was built; .venv stays, and so does a course with its marks
+	test ! -d _build || find _build -mindepth 1 -maxdepth 1 ! -name course -exec rm -rf {} +
+	rm -rf build dist mutants .pytest_cache .ruff_cache .hypothesis
 	find book ddlib tests benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,20 +1,23 @@
-"""Assignments to hand out: `make assignment LESSON=window-networks VARIANT=7`, or LESSON=all.
+"""Assignments for nbgrader: `make assignment LESSON=window-networks ROSTER=students.csv`.
 
-A folder that needs nothing else: open code, formulas, questions, a quiz, a judge, `ddlib`.
-Solutions stay behind. Beside the folder, not in it, lies a key for who teaches: right answers of
-this variant, wrong ones that are to be expected, and what to say to each.
+Each is a folder that needs nothing else: open code, formulas, questions, a quiz, a judge, `ddlib`.
+In a course's `source` it has solutions and hidden tests, in nbgrader's `release` none. `copies` has
+one for each student of a roster, with settings of their own; `keys`, for who teaches, have what is
+right with these, wrong answers that are to be expected, and what to say to each.
 """
 
 from __future__ import annotations
 
 import argparse
 import ast
+import csv
 import os
 import re
 import shutil
+import subprocess
 import sys
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import nbformat
@@ -23,18 +26,29 @@ from dd_lessons import chapters
 from dd_public import repository, site
 from dd_quiz import OWN, questions
 from dd_reader import ANCHOR, CHANGE_THIS, ROLE, TARGET
-from solved import FOLD, Solved, changed, is_check, is_open, is_starter, settings_of, solve
+from handed_in import ALL, SETTINGS, own_copy, release
+from solved import (
+    FOLD,
+    ROOT,
+    Solved,
+    exercises,
+    is_check,
+    is_open,
+    is_starter,
+    settings_of,
+    solve,
+    variant_of,
+)
 
 from workshop.chapters.exercises import Between, MultipleOf, OneOf
 
-ROOT = Path(__file__).parents[2]
+PATHS = [ROOT / "book", ROOT / "book" / "_ext"]
 TUTORIAL = "use-it-on-your-arm"
-MADE = ROOT / "_build" / "assignments"
 EQUATION = re.compile(r"(?ms)^\$\$\n(.*?)\n\$\$[ \t]*(?:\(([\w-]+)\))?[ \t]*$")
 JUDGE = re.compile(r"from ((?:workshop|beyond)\.chapters\.\w+) import check\b")
 ENGINE = "workshop.chapters.exercises"
 SAID = (
-    "# {}: an assignment{}\n\n**Name:**\n\nThis is the code of the lesson {}. Run it from the top. "
+    f"# {{}}: {ALL}\n\nThis is the code of the lesson {{}}. Run it from the top. "
     "Your questions stand at the end, after the lesson's formulas."
 )
 BEGIN = """from importlib.util import find_spec
@@ -43,34 +57,48 @@ for needed in ("ddlib", "judge", "numpy", "scipy", "sympy", "torch", "control", 
     if find_spec(needed) is None:
         raise ModuleNotFoundError(f"{needed} is not there: see README.md beside this notebook.")"""
 HOW = "**How I found it ({}).** *Say why this is the answer, and how a wrong one would show.*"
+POINTS = {"check": 1, "how": 3}  # for each question; the quiz has one for each of its own
 LEAVE = "These are the settings of your assignment. Leave them as they are."
 QUIZ = "## Check yourself\n\nWrite one letter for each question into the cell below."
-READ_ME = """# {0}: an assignment{1}
+MARK = """# Your letters are counted after you have handed in.
+### BEGIN HIDDEN TESTS
+right = {}
+sum(str(choices.get(k)).strip().upper() == letter for k, letter in right.items())
+### END HIDDEN TESTS"""
+CONFIG = """import sys
+
+sys.path += {}
+from handed_in import configure
+
+configure(get_config())
+"""
+READ_ME = """# {0}: an assignment
 
 With Python 3.11 or newer, in this folder:
 
     python -m venv .venv
     .venv/bin/python -m pip install -r requirements.txt
-    .venv/bin/python -m jupyterlab {2}.ipynb
+    .venv/bin/python -m jupyterlab {1}.ipynb
 
 (On Windows `.venv\\Scripts\\python` in place of `.venv/bin/python`.)
 
 On Linux, pip takes a PyTorch of several GB. For the smaller one, made for the CPU, run this before
-the second line: `.venv/bin/python -m pip install {3} --index-url https://download.pytorch.org/whl/cpu`
+the second line: `.venv/bin/python -m pip install {2} --index-url https://download.pytorch.org/whl/cpu`
 
 Run the cells from the top. Put each answer in place of the dots; the cell below judges it. You
 may try as often as you like: change the answer, then run both cells. Below each question, say how
-you found it. In the end write your name into the first cell, run all cells, save, and hand in the
-notebook alone.
+you found it. In the end run all cells, save, and hand in the notebook alone, under its own name.
+Whoever marks it runs it anew, from the top; only your answers, your words and cells that you added
+are taken from it.
 
 The judge is judge.py, which asks, and exercises.py, which compares. Both can be read, so if you
 read them, you see what is right. Your explanation is what counts.
 """
 
 
-def lessons(root: Path = ROOT) -> dict[str, Path]:
+def lessons() -> dict[str, Path]:
     """Notebooks whose exercises are judged, by name, but for the tutorial on one's own arm."""
-    judged = (p for p in chapters(root) if JUDGE.search(p.read_text("utf-8")))
+    judged = (p for p in chapters(ROOT) if JUDGE.search(p.read_text("utf-8")))
     return {p.stem: p for p in judged if p.stem != TUTORIAL}
 
 
@@ -83,9 +111,9 @@ def names(node: ast.AST, use: str) -> set[str]:
     return {node.name} if hasattr(node, "name") and use == "Store" else own
 
 
-def judge(module: str, wanted: set[str], root: Path = ROOT) -> tuple[list[str], list[str]]:
+def judge(module: str, wanted: set[str]) -> tuple[list[str], list[str]]:
     """What some definitions of a module of the book's need: imports, and code as it stands."""
-    text = (root / "book" / (module.replace(".", "/") + ".py")).read_text(encoding="utf-8")
+    text = (ROOT / "book" / (module.replace(".", "/") + ".py")).read_text(encoding="utf-8")
     body, known, imports, code = ast.parse(text).body, 0, [], []
     while known < len(wanted):
         known = len(wanted)
@@ -98,7 +126,7 @@ def judge(module: str, wanted: set[str], root: Path = ROOT) -> tuple[list[str], 
             if node.names and home == ENGINE:
                 node.module = "exercises"
             elif node.names and home.startswith(("workshop", "beyond")):
-                theirs = judge(home, {a.name for a in node.names}, root)
+                theirs = judge(home, {a.name for a in node.names})
                 imports, code = imports + theirs[0], code + theirs[1]
                 continue
             imports += [ast.unparse(node)] * bool(node.names)
@@ -108,10 +136,10 @@ def judge(module: str, wanted: set[str], root: Path = ROOT) -> tuple[list[str], 
     return imports, code
 
 
-def judge_module(name: str, root: Path = ROOT) -> str:
+def judge_module(name: str) -> str:
     """The file judge.py of a lesson."""
-    module = JUDGE.search(lessons(root)[name].read_text("utf-8"))[1]
-    imports, code = judge(module, {"check"}, root)
+    module = JUDGE.search(lessons()[name].read_text("utf-8"))[1]
+    imports, code = judge(module, {"check"})
     first = sorted({*imports}, key=lambda line: ("__future__" not in line, line))
     told = f'"""What is asked in the lesson {name}, and what is right."""'
     return "\n\n\n".join([f"{told}\n\n" + "\n".join(first), *code]) + "\n"
@@ -190,22 +218,34 @@ def where(name: str, title: str) -> str:
     )
 
 
-def _cell(kind: str, source: str, role: str = "", **metadata):
+def _cell(kind: str, source: str, name: str = "", answer=False, points=None, **metadata):
+    """A cell; of one with a name nbgrader takes the answer, counts the points, or locks it."""
     made = getattr(nbformat.v4, f"new_{kind}_cell")(source, metadata=metadata)
-    if role:
-        made.metadata["assignment"] = role
+    made["id"] = name
+    if name:
+        known = {"grade_id": name, "solution": answer, "locked": not answer, "task": False}
+        scored = {} if points is None else {"points": points}
+        grade = {"grade": points is not None, "schema_version": 3}
+        made.metadata["nbgrader"] = {**known, **grade, **scored}
     return made
 
 
-def notebook(path: Path, variant: int = 0):
-    """Title and notebook to hand out."""
+def _between(what: str, source: str) -> str:
+    """What nbgrader takes out before it hands out a notebook."""
+    return f"### BEGIN {what}\n{source}\n### END {what}"
+
+
+def notebook(path: Path, varied: bool = False):
+    """Title and notebook with solutions, from which nbgrader makes that to hand out."""
     name = path.stem
-    lesson = changed(nbformat.read(path, as_version=4), settings_of(name, variant))
+    lesson = nbformat.read(path, as_version=4)
     words, title = Words(lesson), re.search("(?m)^# (.+)$", lesson.cells[0].source)[1]
-    cells = [_cell("markdown", SAID.format(title, _told(variant), where(name, title)), "name")]
-    cells.append(_cell("code", BEGIN, "begin"))
+    cells = [
+        _cell("markdown", SAID.format(title, where(name, title))),
+        _cell("code", BEGIN, "begin"),
+    ]
     told, below, count = "", False, 0
-    quiz = questions(ROOT, f"book/{name}")
+    solutions, explained = exercises(lesson), explanations(lesson)
     for cell in lesson.cells:
         if cell.cell_type == "markdown":
             head, own, _ = cell.source.partition(OWN)
@@ -213,30 +253,39 @@ def notebook(path: Path, variant: int = 0):
             told = found[-1] if found and not below else told
             if own:
                 below, told = True, ""
-                cells += _formulas(words) + _quiz(words, quiz)
+                cells += _formulas(words) + _quiz(words, questions(ROOT, f"book/{name}"))
                 cells.append(_cell("markdown", OWN.strip()))
                 texts = asked(lesson)
         elif below and is_starter(cell):
+            cells.append(_cell("markdown", words.plain(texts[count])))
+            answer = _between("SOLUTION", solutions[count].solution.strip())
+            cells.append(_cell("code", f"{cell.source}\n{answer}", cell.id, answer=True))
             count += 1
-            cells.append(_cell("markdown", words.plain(texts[count - 1])))
-            cells.append(_cell("code", cell.source, f"answer-{count}"))
         elif below and is_check(cell):
             source = JUDGE.sub("", cell.source).strip("\n")
-            source = f"from judge import check\n\n{source}"
-            cells.append(_cell("code", source, f"check-{count}"))
-            cells.append(_cell("markdown", HOW.format(count), f"how-{count}"))
+            test = _between("HIDDEN TESTS", "assert check.right")
+            source = f"from judge import check\n\n{source}\n{test}"
+            cells.append(_cell("code", source, f"check-{count}", points=POINTS["check"]))
+            said = _between("SOLUTION", _quoted(words, explained[count - 1]))
+            text = f"{HOW.format(count)}\n\n{said}"
+            cells.append(_cell("markdown", text, f"how-{count}", True, POINTS["how"]))
         elif is_open(cell):
-            role = "settings" if CHANGE_THIS in cell.metadata.get("tags", ()) else ""
-            told += f"\n\n{LEAVE}" * bool(role)
+            settings = CHANGE_THIS in cell.metadata.get("tags", ())
+            told += f"\n\n{LEAVE}" * settings
             cells += [_cell("markdown", told)] if told else []
-            cells.append(_cell("code", cell.source, role))
+            if settings:  # of a student's own, so not locked by nbgrader
+                own = {"tags": [CHANGE_THIS], "editable": False, "deletable": False}
+                cells.append(_cell("code", cell.source, **own))
+                cells[-1]["id"] = SETTINGS
+            else:
+                cells.append(_cell("code", cell.source, f"code-{len(cells)}"))
             figure = cell.metadata.get("mystnb", {}).get("figure")
             if figure in words.figures:
                 cells.append(_cell("markdown", words.caption(figure)))
             told = ""
     for k, cell in enumerate(cells):
-        cell["id"] = cell.metadata.get("assignment", f"cell-{k}")
-    known = {"lesson": name, "variant": variant, "questions": count}
+        cell["id"] = cell["id"] or f"cell-{k}"
+    known = {"lesson": name, "varied": varied, "questions": count}
     metadata = {**lesson.metadata, "assignment": known}
     return title, nbformat.from_dict({**lesson, "metadata": metadata, "cells": cells})
 
@@ -258,17 +307,17 @@ def _quiz(words: Words, quiz: list[dict]) -> list:
         choices = "\n".join(f"- **{a['letter']}.** {a['text']}" for a in one["answers"])
         texts += [f"**{k}.** {one['question']}", choices]
     empty = ", ".join(f'{k}: ""' for k in range(1, len(quiz) + 1))
-    source = f'choices = {{{empty}}}  # one letter each, like "A"'
-    return [_cell("markdown", "\n\n".join(texts)), _cell("code", source, "quiz")]
-
-
-def right_letters(name: str) -> dict[int, str]:
-    """The right answers of a lesson's quiz."""
-    quiz = questions(ROOT, f"book/{name}")
-    return {
+    right = {
         k: next(a["letter"] for a in one["answers"] if a.get("right"))
         for k, one in enumerate(quiz, 1)
     }
+    answer = _between("SOLUTION", f"choices = {right}")
+    source = f'choices = {{{empty}}}  # one letter each, like "A"\n{answer}'
+    return [
+        _cell("markdown", "\n\n".join(texts)),
+        _cell("code", source, "quiz", answer=True),
+        _cell("code", MARK.format(right), "quiz-marks", points=len(quiz)),
+    ]
 
 
 def slips(one: Solved) -> Iterator[tuple[str, str]]:
@@ -362,75 +411,90 @@ def _quoted(words: Words, text: str) -> str:
     return words.plain(text)
 
 
-def write(
-    lesson: str, variant: int = 0, to: Path = MADE, root: Path = ROOT, keys: bool = True
-) -> list[Path]:
-    """Make the folder of a lesson, or those of all, each with its key beside it.
+def write(lesson: str, course: Path, students: Iterable[str] = (), keys: bool = True) -> list[Path]:
+    """Make a lesson's assignment, or all: for everybody alike, or for students of a roster.
 
-    Of all, lessons without variants are made as they stand in the book.
+    Returns the folders to hand out.
     """
-    known = lessons(root)
+    known = lessons()
     if lesson not in {"all", *known}:
         raise ValueError(f"LESSON must be all or one of {', '.join(known)}; got {lesson!r}")
+    course.mkdir(parents=True, exist_ok=True)
+    (course / "nbgrader_config.py").write_text(CONFIG.format([str(p) for p in PATHS]), "utf-8")
     made = []
     for name in [*known] if lesson == "all" else [lesson]:
-        try:
-            settings_of(name, variant)
-            number = variant
-        except ValueError:
-            if lesson != "all":
-                raise
-            number = 0
-        made.append(folder(known[name], number, to / f"{name}{_dash(number)}", root))
-        if keys:
-            text = key(known[name], number)
-            (to / f"KEY-{name}{_dash(number)}.md").write_text(text, encoding="utf-8")
+        folder(known[name], course / "source" / name, varied=bool(students))
+        nbgrader(course, "generate_assignment", name, "--force")
+        made += [course / "release" / name] if not students else []
+        for student in students:
+            to = course / "copies" / student / name
+            shutil.copytree(course / "release" / name, to, dirs_exist_ok=True)
+            nbformat.write(own_copy(release(course, name), student), to / f"{name}.ipynb")
+            made.append(to)
+        (course / "keys").mkdir(exist_ok=True)
+        for variant in {variant_of(name, s) for s in students} or {0} if keys else ():
+            to = course / "keys" / f"{name}{f'-variant-{variant}' if variant else ''}.md"
+            to.write_text(key(known[name], variant), "utf-8")
     return made
 
 
-def _dash(variant: int) -> str:
-    return f"-variant-{variant}" if variant else ""
+def nbgrader(course: Path, *asked: str) -> str:
+    """Run nbgrader in a course's folder; what it said."""
+    done = subprocess.run(
+        [sys.executable, "-m", "nbgrader", *asked], cwd=course, capture_output=True, text=True
+    )
+    if done.returncode:
+        raise ValueError(f"nbgrader {' '.join(asked)}:\n{done.stderr}")
+    return done.stderr
 
 
-def folder(path: Path, variant: int, to: Path, root: Path = ROOT) -> Path:
-    """What is handed out: notebook, judge, package, data, how to run it."""
-    project = tomllib.loads((root / "pyproject.toml").read_text("utf-8"))["project"]
+def folder(path: Path, to: Path, varied: bool = False) -> Path:
+    """What nbgrader hands out, with solutions: notebook, judge, package, data, how to run it."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     (torch,) = project["optional-dependencies"]["learning"]
     needs = [*project["dependencies"], torch, "jupyterlab"]
-    name, (title, made) = path.stem, notebook(path, variant)
+    name, (title, made) = path.stem, notebook(path, varied)
     shutil.rmtree(to, ignore_errors=True)
-    shutil.copytree(root / "ddlib", to / "ddlib", ignore=lambda *_: ["__pycache__"])
-    shutil.copy(root / "LICENSE", to)
-    shutil.copy(root / "book" / (ENGINE.replace(".", "/") + ".py"), to)
-    (to / "judge.py").write_text(judge_module(name, root), "utf-8")
-    (to / "README.md").write_text(
-        READ_ME.format(title, _told(variant), name, f'"{torch}"'), "utf-8"
-    )
+    shutil.copytree(ROOT / "ddlib", to / "ddlib", ignore=lambda *_: ["__pycache__"])
+    shutil.copy(ROOT / "LICENSE", to)
+    shutil.copy(ROOT / "book" / (ENGINE.replace(".", "/") + ".py"), to)
+    (to / "judge.py").write_text(judge_module(name), "utf-8")
+    (to / "README.md").write_text(READ_ME.format(title, name, f'"{torch}"'), "utf-8")
     (to / "requirements.txt").write_text("\n".join(needs) + "\n", "utf-8")
     read = re.findall(r"data/([\w.-]+)", "\n".join(c.source for c in made.cells))
     if read:  # with the licences
-        data = root / "book" / "data"
+        data = ROOT / "book" / "data"
         spare = {p.name for p in data.iterdir() if p.suffix in {".csv", ".npz"}} - {*read}
         shutil.copytree(data, to / "data", ignore=shutil.ignore_patterns(*spare))
     nbformat.write(made, to / f"{name}.ipynb")
     return to
 
 
+def roster(path: Path) -> list[str]:
+    """The students of a file as nbgrader imports it: a column is `id`."""
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        found = [row.get("id") or "" for row in csv.DictReader(file)]
+    wrong = [name for name in found if not re.fullmatch(r"\w[\w.@-]*", name)]
+    if wrong or not found:
+        raise ValueError(f"ROSTER must have a column id of letters, digits and .@-_; got {wrong}")
+    return found
+
+
 def main() -> str:
     parser = argparse.ArgumentParser()
     parser.add_argument("lesson")
-    parser.add_argument("variant", nargs="?", default="0")
+    parser.add_argument("course", type=Path)
+    parser.add_argument("roster", nargs="?", default="")
     given = parser.parse_args()
-    if not re.fullmatch(r"\d*", given.variant):
-        raise ValueError(f"VARIANT must be a whole number, 0 or above; got {given.variant!r}")
-    made = write(given.lesson, int(given.variant or 0))
-    return "\n".join(
-        f"==> {one.relative_to(ROOT)}, and KEY-{one.name}.md beside it" for one in made
-    )
+    path = Path(given.roster).absolute() if given.roster else None
+    made = write(given.lesson, given.course, roster(path) if path else ())
+    if path:
+        nbgrader(given.course, "db", "student", "import", str(path))
+    return "\n".join(f"==> {one}" for one in made) + f"\n==> Keys in {given.course / 'keys'}"
 
 
 if __name__ == "__main__":
     try:
         print(main())
-    except ValueError as error:
+    except (ValueError, OSError) as error:
         sys.exit(f"==> {error}")

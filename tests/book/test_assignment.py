@@ -1,6 +1,7 @@
 """Assignments: a folder that needs nothing else, where checks judge and no solution is left."""
 
 import ast
+import csv
 import json
 import re
 import subprocess
@@ -9,15 +10,17 @@ import sys
 import nbformat
 import pytest
 from book_pages import ROOT
-from chapter_rules import code_of, is_check, is_starter
+from chapter_rules import code_of, is_starter
+from nbgrader.api import Gradebook
 from open_cells import exercises, lesson
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import assignment
+import handed_in
 import solved
 import variants
 
-LESSONS = [*assignment.lessons(ROOT)]
+LESSONS = [*assignment.lessons()]
 QUICK = ("dynamics", "window-size")
 VARIED = [name for name in LESSONS if not isinstance(solved.variants(name), str)]
 FAST = ("dynamics", "feedback")  # all their variants, at each run
@@ -65,8 +68,8 @@ for line in sys.stdin:
 @pytest.fixture(scope="module")
 def handed_out(tmp_path_factory):
     folder = tmp_path_factory.mktemp("assignments")
-    made = assignment.write("all", 0, folder, keys=False)
-    assert {path.name for path in made} == set(LESSONS)
+    for name, path in assignment.lessons().items():
+        assignment.folder(path, folder / name)
     return folder
 
 
@@ -93,14 +96,21 @@ def read(folder, name):
     return nbformat.read(folder / name / f"{name}.ipynb", as_version=4)
 
 
+def seen(source):
+    """A cell as a student gets it."""
+    return re.sub(r"(?ms)^### BEGIN ([A-Z ]+)\n.*?^### END \1\n?", "", source)
+
+
 def test_every_question_is_there_and_no_solution(handed_out):
     for name in LESSONS:
         made, found = read(handed_out, name), exercises(f"book/{name}")
         nbformat.validate(made)
-        starters = [each.starter for each in found]
-        assert starters == [cell.source for cell in made.cells if is_starter(cell)]
-        assert sum(map(is_check, made.cells)) == len(found)
-        texts = [cell.source for cell in made.cells]
+        starters = [cell for cell in made.cells if is_starter(cell)]
+        assert [e.starter for e in found] == [seen(c.source).strip() for c in starters], name
+        checks = [cell for cell in made.cells if cell.id.startswith("check-")]
+        assert len(checks) == len(found)
+        assert all("HIDDEN TESTS\nassert check.right\n" in cell.source for cell in checks)
+        texts = [seen(cell.source) for cell in made.cells]
         assert sum(bool(re.match(r"\*\*\d+\. ", text)) for text in texts) == len(found), name
         everything = "\n".join(texts)
         code = "\n".join(cell.source for cell in code_of(lesson(f"book/{name}")))
@@ -116,17 +126,18 @@ def test_students_find_what_they_need(handed_out):
         for cell, below in zip(made.cells, [*made.cells[1:], None]):
             if cell.cell_type == "markdown" and re.fullmatch(r"#+ .+", cell.source.strip()):
                 assert below is not None and not re.match(r"#{1,2} ", below.source), cell.source
-        roles = [cell.metadata.get("assignment", "") for cell in made.cells]
+        names = [cell.id for cell in made.cells]
         count = made.metadata["assignment"]["questions"]
-        for kind in ("answer", "check", "how"):
-            assert [r for r in roles if r.startswith(kind)] == [
+        for kind in ("check", "how"):
+            assert [n for n in names if n.startswith(f"{kind}-")] == [
                 f"{kind}-{k}" for k in range(1, count + 1)
             ]
-        assert assignment.LEAVE in made.cells[roles.index("settings") - 1].source
-        assert roles.count("settings") == 1 and roles.count("quiz") == 1, name
+        assert assignment.LEAVE in made.cells[names.index("settings") - 1].source
+        assert names.count("settings") == 1 and names.count("quiz") == 1, name
         text = "\n".join(cell.source for cell in made.cells)
         shown = [*map(int, re.findall(r"\\tag\{(\d+)\}", text))]
         assert shown == [*range(1, len(shown) + 1)]
+        text = seen(text)
         assert {*map(int, re.findall(r"Eq\. \((\d+)\)", text))} <= {*shown}, name
         figures = {*re.findall(r"Figure \d+(?!-)\b", text)}
         assert {*re.findall(r"\*\*(Figure \d+)\.\*\*", text)} == figures, name
@@ -143,34 +154,39 @@ def test_students_find_what_they_need(handed_out):
 def test_it_runs_alone_and_judges(handed_out, name, cells_run):
     """In a process that finds neither the book nor the repository's ddlib.
 
-    As handed out a check says "in place of the dots"; with a solution put in, "Right".
+    As handed out a check says "in place of the dots"; with a solution put in, "Right", and what
+    nbgrader runs in secret agrees.
     """
-    found, cells, answers = exercises(f"book/{name}"), [], []
-    for cell in read(handed_out, name).cells:
-        cells += [cell.source] * (cell.cell_type == "code")
-        if is_check(cell):
-            answers.append((len(cells) - 1, len(cells) + 1))
-            cells += [found[len(answers) - 1].solution, cell.source, "print(mine)"]
+    cells, answers = [], []
+    for cell in (c for c in read(handed_out, name).cells if c.cell_type == "code"):
+        if cell.id.startswith("check-"):
+            solution = cells.pop()
+            cells += [seen(solution), seen(cell.source), solution, cell.source, "print(mine)"]
+            answers.append(len(cells))
+        else:
+            cells.append(cell.source)
     told, package, book, error = cells_run(handed_out / name, cells)
     assert not error, error
     assert package.startswith(str(handed_out)) and not book
-    assert len(answers) == len(found) >= 1
-    for before, after in answers:
-        assert "in place of the dots" in told[before] and told[after].startswith("Right")
-        assert told[after + 1].strip() == "Ellipsis"  # no answer is judged twice
+    assert len(answers) == len(exercises(f"book/{name}")) >= 1
+    for end in answers:
+        before, _, after, left = told[end - 4 : end]
+        assert "in place of the dots" in before and after.startswith("Right")
+        assert left.strip() == "Ellipsis"  # no answer is judged twice
 
 
-def test_what_is_missing_is_named(handed_out):
+def test_what_is_missing_is_named(handed_out, tmp_path):
     """The first cell says what is not there; so does the command."""
     first = next(c for c in read(handed_out, "dynamics").cells if c.cell_type == "code")
     with pytest.raises(ModuleNotFoundError, match=r"judge is not there: see README\.md"):
         exec(first.source, {})
     with pytest.raises(ValueError, match=r"LESSON must be all or one of dynamics, .*; got 'door'"):
-        assignment.write("door")
-    with pytest.raises(ValueError, match=r"VARIANT must be 0 to \d+ for feedback; got 99"):
-        assignment.write("feedback", 99)
-    with pytest.raises(ValueError, match=r"VARIANT must be 0 to 0 for verdict \(its .*; got 1"):
-        assignment.write("verdict", 1)
+        assignment.write("door", tmp_path)
+    (tmp_path / "roster.csv").write_text("id,email\nada,\n../bo,\n", "utf-8")
+    with pytest.raises(ValueError, match=r"ROSTER must have a column id .*; got \['\.\./bo'\]"):
+        assignment.roster(tmp_path / "roster.csv")
+    with pytest.raises(ValueError, match="FOLDER must have work files in it"):
+        handed_in.collect(tmp_path, tmp_path)
 
 
 def test_a_lesson_has_ten_variants_or_says_why_not():
@@ -192,6 +208,27 @@ def test_a_variant_of_each_lesson_is_solved(name):
     assert found and all(one.said.startswith("Right") for one in found)
 
 
+LECTURES = (
+    (ROOT / "book" / "teaching.md").read_text("utf-8").partition("## A class on one lesson")[0]
+)
+HOMEWORK = [
+    (name, int(number))
+    for name, numbers in re.findall(r"\{exercise\}`([\w-]+): ([\d, ]+)`", LECTURES)
+    for number in numbers.split(", ")
+]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name, number", HOMEWORK)
+def test_homework_differs_from_student_to_student(name, number):
+    """What the book prints is wrong with other settings."""
+    book, own = (
+        solved.solve(variants.path(name), solved.settings_of(name, k), only=number)[0]
+        for k in (0, 7)
+    )
+    assert not own.takes(book.answer)
+
+
 def test_settings_take_the_place_of_others():
     cell = "a, b = (1.0, 2.0), 3  # m, 1\nc = f(4)  # as ü\nd = 5"
     made = solved.with_settings(cell, {"b": "33", "c": "g(1)"})
@@ -203,18 +240,103 @@ def test_settings_take_the_place_of_others():
         solved.changed(notebook, {"loose": "1"})
 
 
-def test_a_key_lies_beside_a_variant(tmp_path):
+def test_a_key_says_what_is_right():
     """Its answer is the rule's, F / (1.5 T), with the settings of that variant."""
-    (made,) = assignment.write("feedback", 7, tmp_path)
-    assert made.name == "feedback-variant-7"
-    key = (tmp_path / "KEY-feedback-variant-7.md").read_text("utf-8")
+    key = assignment.key(assignment.lessons()["feedback"], 7)
     settings = solved.settings_of("feedback", 7)
     limit = ast.literal_eval(settings["viscous"])[0] / (1.5 * float(settings["period"]))
     assert f"`{limit:.6g}` N m/rad" in key and "{" not in re.sub(r"\$.*?\$|```.*?```", "", key)
     assert f"| `{3 * limit:.6g}` | Wrong: that is the limit without the delay." in key
-    notebook = (made / "feedback.ipynb").read_text("utf-8")
-    assert f"period = {settings['period']}  # s between" in notebook
-    assert not [path for path in made.rglob("*") if "KEY" in path.name]
     assert key.count("The judge says: Right") == len(exercises("book/feedback"))
-    letters = assignment.right_letters("feedback")
-    assert [*letters.values()] == re.findall(r"\*\*([A-E]) is right\.\*\*", key)
+
+
+def test_a_roster_s_students_have_settings_of_their_own():
+    """A student keeps a variant when the roster grows; another lesson has another draw."""
+    names = [f"student-{k}" for k in range(200)]
+    drawn = [solved.variant_of("feedback", name) for name in names]
+    assert {*drawn} == {*range(1, len(solved.variants("feedback")) + 1)}
+    assert drawn != [solved.variant_of("dynamics", name) for name in names]
+    assert {solved.variant_of("verdict", name) for name in names} == {0}
+
+
+NAMES = ("ada", "bo", "cy", "dee", "eve")
+RIGHT = "mine = F / (1.5 * period)"
+
+
+def page(**answers):
+    changes = {name.replace("_", "-"): ["mine = ...", code] for name, code in answers.items()}
+    pages = {"feedback.html": {"changes": changes, "solved": []}}
+    return json.dumps({"format": "direct-drive-work-1", "pages": pages, "extents": ""})
+
+
+@pytest.mark.slow
+def test_nbgrader_from_release_to_export(tmp_path):
+    """Good work, none, work from a page, a cheat, and a file that is torn."""
+    course, table = tmp_path / "course", tmp_path / "roster.csv"
+    table.write_text("id,email\n" + "".join(f"{name},\n" for name in NAMES), "utf-8")
+    copies = assignment.write("feedback", course, assignment.roster(table), keys=False)
+    assignment.nbgrader(course, "db", "student", "import", str(table))
+    assert [path.parts[-2] for path in copies] == [*NAMES]
+    for path in course.rglob("*"):
+        handed = path.is_file() and "source" not in path.parts and path.suffix == ".ipynb"
+        assert not handed or not re.search("BEGIN|1\\.5 \\* period", path.read_text("utf-8")), path
+
+    solutions = [exercise.solution for exercise in exercises("book/feedback")]
+    submitted = course / "submitted"
+    made = {name: read(course / "copies" / name, "feedback") for name in NAMES}
+    named = {name: {cell.id: cell for cell in made[name].cells} for name in NAMES}
+    settings = solved.settings_of("feedback", solved.variant_of("feedback", "ada"))
+    assert f"period = {settings['period']} " in named["ada"]["settings"].source
+    answers = [c for c in made["ada"].cells if is_starter(c)]
+    for cell, code in zip(answers, solutions):
+        cell.source = code
+    right = re.search(
+        "choices = .*'.*", (course / "source/feedback/feedback.ipynb").read_text("utf-8")
+    )
+    named["ada"]["quiz"].source = json.loads(f'"{right[0].partition(chr(92))[0]}"')
+    named["ada"]["how-1"].source += "\n\nThe hold is late by half a period."
+    # with the settings of the book, where the solution stands; a check that says yes; one is gone
+    given = {cell.id: cell for cell in read(course / "release", "feedback").cells}
+    named["cy"]["settings"].source = given["settings"].source
+    named["cy"]["feedback-one"].source = "mine = 5.3 / (1.5 * 0.002)"
+    named["cy"]["check-2"].source = "print('Right')"
+    named["cy"]["how-1"].source += "\n\n$a<b$ <img src=x onerror=alert(1)>"
+    named["cy"][
+        "feedback-one"
+    ].source += "\ndisplay({'text/html': '<script>alert(1)</script>'}, raw=True)"
+    made["cy"].cells.remove(named["cy"]["check-3"])
+    for name in ("ada", "bo", "cy"):
+        (submitted / name / "feedback").mkdir(parents=True)
+        nbformat.write(made[name], submitted / name / "feedback" / "feedback.ipynb")
+    (submitted / "eve" / "feedback").mkdir(parents=True)
+    (submitted / "eve" / "feedback" / "feedback.ipynb").write_text("{", "utf-8")
+
+    returned = tmp_path / "returned"
+    (returned / "dee").mkdir(parents=True)
+    code = f"# the hold counts\n{RIGHT}"
+    (returned / "dee" / "direct-drive-work.json").write_text(page(feedback_one=code), "utf-8")
+    (returned / "ada.json").write_text(page(feedback_one="mine = 0"), "utf-8")
+    (returned / "torn.json").write_text("{", "utf-8")
+    told = "\n".join(handed_in.collect(returned, course))
+    assert "feedback, answers: 1" in told and "no work file of this book" in told
+    assert "feedback is left" in told and "mine = 0" not in (
+        submitted / "ada" / "feedback" / "feedback.ipynb"
+    ).read_text("utf-8")
+
+    with pytest.raises(
+        ValueError, match="error processing assignment 'feedback' for student 'eve'"
+    ):
+        assignment.nbgrader(course, "autograde", "feedback")
+    with Gradebook(f"sqlite:///{course / 'gradebook.db'}") as gradebook:
+        for name in ("ada", "dee"):
+            grade = gradebook.find_grade("how-1", "feedback", "feedback", name)
+            assert grade.needs_manual_grade
+            grade.manual_score, grade.needs_manual_grade = 2, False
+        gradebook.db.commit()
+    assignment.nbgrader(course, "generate_feedback", "feedback")
+    assignment.nbgrader(course, "export", "--to", "marks.csv")
+    with (course / "marks.csv").open(newline="") as file:
+        marks = {row["student_id"]: float(row["score"]) for row in csv.DictReader(file)}
+    assert marks == {"ada": 4 + 3 + 2, "bo": 0, "cy": 0, "dee": 1 + 2, "eve": 0}
+    feedback = (course / "feedback" / "cy" / "feedback" / "feedback.html").read_text("utf-8")
+    assert "Wrong" in feedback and not re.search(r"<img src=x|<script>alert", feedback)

@@ -140,7 +140,7 @@ def judging(exercise: Callable) -> Callable:
     """The `check(number, mine, *given)` of a lesson, from what gives each `Exercise`.
 
     It sets `mine` back to dots where it was called, so that no answer is judged twice: not if the
-    cell with the next answer raises, either.
+    cell with the next answer raises, either. `check.right` says whether the last answer was.
     """
 
     def check(number: int, mine, *given) -> None:
@@ -148,16 +148,16 @@ def judging(exercise: Callable) -> Callable:
         caller = sys._getframe(1).f_globals
         if caller.get("mine", ...) is mine:
             caller["mine"] = ...
-        judge(mine, exercise(number, *given))
+        check.right = judge(mine, exercise(number, *given))
 
     return check
 
 
-def judge(mine, exercise: Exercise) -> None:
-    """Say what is to be said to an answer, `...` as long as there is none."""
+def judge(mine, exercise: Exercise) -> bool:
+    """Say what is to be said to an answer, `...` as long as there is none: is it right?"""
     if mine is ...:
         display(Waiting(exercise))
-        return
+        return False
     try:
         answer = _taken(mine, exercise)
         with np.errstate(all="ignore"):
@@ -168,6 +168,8 @@ def judge(mine, exercise: Exercise) -> None:
         print(f"Not judged: with your answer the check raised {_named(error)}")
     else:
         print(verdict + _echo(answer, exercise))
+        return verdict.startswith("Right")
+    return False
 
 
 def _verdict(answer, exercise: Exercise) -> str:
