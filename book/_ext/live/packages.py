@@ -30,10 +30,16 @@ CORE = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip
 LOCK = "pyodide-lock.json"
 CODES = ("code ", "errno ", "syscall ")  # what npm says before it says why
 PUBLIC = f"https://cdn.jsdelivr.net/pyodide/v{VERSION}/full"  # where Pyodide keeps its wheels
-WHEELS = ("numpy", "scipy", "sympy", "matplotlib", "pandas")  # and what these depend on
+WHEELS = (
+    "numpy",
+    "scipy",
+    "sympy",
+    "matplotlib",
+    "pandas",
+    "scikit-learn",
+)  # and what these depend on
 PURE = {  # from this environment: what each depends on, and what is imported of it
     "control": (["numpy", "scipy", "matplotlib"], "control"),
-    "joblib": ([], "joblib"),
     "lazy-loader": ([], "lazy_loader"),
     "pyyaml": ([], "yaml"),
     "traitlets": ([], "traitlets"),
