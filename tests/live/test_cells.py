@@ -8,7 +8,7 @@ import nbformat
 import pytest
 from book_pages import WALK
 from chapter_rules import CHANGE_THIS, is_check, is_starter, tags, visible
-from live.cells import live_cells, needs
+from live.cells import imported, live_cells, needs
 from live.handles import handles
 from live.packages import Refused
 from live.pages import live_page
@@ -26,13 +26,33 @@ def test_a_lesson_becomes_live(page):
     for cell in cells:
         if cell["kind"] == "answer":
             assert "mine =" in cell["solution"] and "mine" in cell["solves"]["writes"]
-    marked = live_page(plain(page), notebook, page, [1, 2], [page])
+    marked = live_page(plain(page), notebook, page, [1, 2], [page], {})
     pairs = re.findall(r'data-live="([^"]+)".*?<pre>(.*?)</pre>', marked, re.S)
     code = [(name, html.unescape(text)) for name, text in pairs]
     assert code == [(cell.id, cell.source) for cell in wanted]
     assert marked.index("follow.js") < marked.index("live.js")
     with pytest.raises(Refused, match="make book first"):
-        live_page(plain(page)[:-900], notebook, page, [1, 2], [page])
+        live_page(plain(page)[:-900], notebook, page, [1, 2], [page], {})
+
+
+def test_packages_come_in_the_order_in_which_cells_import_them():
+    packages = {
+        name: {"imports": [name], "depends": depends}
+        for name, depends in (
+            ("numpy", []),
+            ("scipy", ["numpy"]),
+            ("control", ["scipy", "matplotlib"]),
+            ("matplotlib", ["numpy"]),
+            ("sympy", []),
+        )
+    }
+    sources = (
+        "import numpy as np",
+        "from ddlib import figures\nimport control as ct, os",
+        "import sympy",
+    )
+    cells = [{"source": source} for source in sources]
+    assert imported(cells, packages) == ["matplotlib", "scipy", "control", "sympy"]
 
 
 def test_what_a_page_lacks_of_pytorch_is_named():

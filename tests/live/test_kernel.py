@@ -131,21 +131,13 @@ def test_a_training_shows_its_progress_and_can_be_stopped(run, monkeypatch):
     monkeypatch.setattr(concurrent.futures, "ThreadPoolExecutor", None)  # given back at the end
     monkeypatch.setitem(sys.modules, "tqdm", types.ModuleType("tqdm"))
     monkeypatch.setitem(sys.modules, "tqdm.auto", types.ModuleType("tqdm.auto"))
-    monkeypatch.setattr(kernel.Progress, "pause", None)
-    asked = []
-
-    def pause():
-        asked.append(True)
-        if len(asked) == 3:
-            raise KeyboardInterrupt("after three")
-        return True
-
-    kernel.start(pause)
+    kernel.start()
     code = "from tqdm.auto import tqdm\nimport time\nfor done in tqdm(range(9), desc='epochs'):\n"
-    shown, _ = run(f"{code}    time.sleep(0.11)", "one")
+    stop = "    if done == 2:\n        raise KeyboardInterrupt('after three')"
+    shown, _ = run(f"{code}    time.sleep(0.11)\n{stop}", "one")
     kinds = [kind for kind, _ in shown]
     assert kinds == ["progress", "progress", "stopped"]
-    assert json.loads(shown[0][1])[1:] == ["epochs", True]
+    assert json.loads(shown[0][1])[1:] == ["epochs"]
     assert shown[-1] == ("stopped", "after three")
     assert isinstance(sys.last_value, KeyboardInterrupt)
     assert run("print(done)", "two", ["one"])[0] == [("text", "2\n")]

@@ -3,6 +3,7 @@
 import hashlib
 import json
 import re
+import sys
 
 import chromium
 import pytest
@@ -67,6 +68,25 @@ def test_a_core_that_was_changed_since_is_not_taken(tmp_path):
 def test_packages_are_asked_for_before_the_book_is_built():
     lines = (ROOT / "Makefile").read_text("utf-8").partition("\nlive:")[2].splitlines()[1:4]
     assert [line.split()[-1] for line in lines] == ["--packages", "book/_ext/build.py", "@$(LIVE)"]
+
+
+def test_code_is_compiled_once_by_the_python_that_runs_it(tmp_path, monkeypatch):
+    """With a `node` that writes down what it was given."""
+    node = tmp_path / "node"
+    node.write_text(
+        f"#!{sys.executable}\nimport sys, shutil\n"
+        f"open({str(tmp_path / 'asked')!r}, 'a').write('asked ')\n"
+        "for given, made in zip(sys.argv[4::3], sys.argv[5::3]): shutil.copy(given, made)\n"
+    )
+    node.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    out = tmp_path / "out"
+    out.mkdir()
+    for name in ("a.whl", "workshop.zip"):
+        (out / name).write_bytes(packages.zipped({"a.py": name.encode()}))
+    for _ in range(2):
+        packages.compile_all(out, tmp_path / "store")
+    assert (tmp_path / "asked").read_text() == "asked "
 
 
 def test_a_widget_finds_in_a_page_what_it_imports_of_its_still():

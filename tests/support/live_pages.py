@@ -55,7 +55,7 @@ BESIDE = """window.Worker = class {
 def set_up(tab, given: Iterable[dict], name: str = "a.html") -> str:
     """Have a tab find a page with such cells and nothing else; its address."""
     given = [{"kind": "open", "needs": "", "names": {}, **cell} for cell in given]
-    about = {"cells": given, "pages": ["a.html", "b.html"], "megabytes": [1, 1]}
+    about = {"cells": given, "ahead": [], "pages": ["a.html", "b.html"], "megabytes": [1, 1]}
     data = json.dumps(about | {"data": [], "notebook": ""}).replace("</", "<\\/")
     field = '<div class="cell" data-live="{id}"><div class="cell_input"></div></div>'
     shown = "".join(field.format(**cell) for cell in given)

@@ -11,7 +11,7 @@ from answers import exercises, is_check, is_open, is_starter
 from lessons import CHANGE_THIS
 
 from live.handles import handles
-from live.packages import PAGE
+from live.packages import FIRST, PAGE
 from live.page.names import names
 
 
@@ -79,3 +79,35 @@ def live_cells(notebook) -> list[dict]:
         both = f"{exercise.solution}\n{exercise.check}"
         about["solves"] = names(both, imported).as_dict()
     return cells
+
+
+def imported(cells: list[dict], packages: dict) -> list[str]:
+    """Packages that cells import, in their order, each after those that it depends on.
+
+    Without what comes before the first cell; `figures` draw with Matplotlib.
+    """
+    roots = [name for cell in cells for name in _imports(cell["source"])]
+    order: list[str] = []
+
+    def add(name):
+        if name not in order:
+            for other in packages[name]["depends"]:
+                add(other)
+            order.append(name)
+
+    for root in roots:
+        for name in [name for name, entry in packages.items() if root in entry["imports"]]:
+            add(name)
+    return [name for name in order if name not in FIRST]
+
+
+def _imports(source: str) -> list[str]:
+    """The packages behind the modules of a cell's imports."""
+    found = []
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            found += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            found += [f"{node.module}.{alias.name}" for alias in node.names]
+    drawn = ["matplotlib"] if "ddlib.figures" in found else []
+    return [*drawn, *(name.partition(".")[0] for name in found)]

@@ -24,16 +24,24 @@ from pathlib import Path
 import ddlib
 
 PAGE = Path(__file__).with_name("page")  # what the page itself runs
+COMPILE = Path(__file__).with_name("compile.mjs")
+SITE = "/lib/python{}.{}/site-packages/"  # of the Python in a page, by its version
 VERSION = "314.0.3"
 TARBALL = "sK40My6m8tmBUYtYH9au9rXUeh9x0wfahtHdOlGmJxZDsKBGKtP6KznyFB2+u/klbQTdDionR0uaVd176zVQzQ=="
 CORE = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip")
 LOCK = "pyodide-lock.json"
 CODES = ("code ", "errno ", "syscall ")  # what npm says before it says why
 PUBLIC = f"https://cdn.jsdelivr.net/pyodide/v{VERSION}/full"  # where Pyodide keeps its wheels
-WHEELS = ("numpy", "scipy", "sympy", "matplotlib", "pandas")  # and what these depend on
+WHEELS = (
+    "numpy",
+    "scipy",
+    "sympy",
+    "matplotlib",
+    "pandas",
+    "scikit-learn",
+)  # and what these depend on
 PURE = {  # from this environment: what each depends on, and what is imported of it
     "control": (["numpy", "scipy", "matplotlib"], "control"),
-    "joblib": ([], "joblib"),
     "lazy-loader": ([], "lazy_loader"),
     "pyyaml": ([], "yaml"),
     "traitlets": ([], "traitlets"),
@@ -196,8 +204,36 @@ def taken(mirror: str, store: Path) -> dict:
     return {**lock, "packages": packages}
 
 
-def write_packages(root: Path, mirror: str, store: Path, out: Path) -> list[int]:
-    """All that the worker loads, into a folder; returns megabytes, at first and in all."""
+def compile_all(folder: Path, store: Path) -> None:
+    """Put compiled code in place of sources in all wheels and zips of a folder; it is kept."""
+    kept = store / "compiled"
+    kept.mkdir(parents=True, exist_ok=True)
+    todo, found = [], {}
+    for path in sorted((*folder.rglob("*.whl"), folder / "workshop.zip")):
+        found[path] = kept / f"{sha256(path.read_bytes() + COMPILE.read_bytes())}.zip"
+        if not found[path].is_file():
+            root = SITE if path.suffix == ".whl" else "/book/"
+            todo += [root, path, found[path].with_suffix(".part")]
+    if todo:
+        node = shutil.which("node")
+        if node is None:
+            raise Refused("node is missing: it compiles packages (https://nodejs.org)")
+        print(f"==> Compiling {len(todo) // 3} packages", flush=True)
+        done = subprocess.run(
+            [node, COMPILE, store.resolve(), *todo], capture_output=True, text=True
+        )
+        if done.returncode:
+            raise Refused(f"packages could not be compiled: {done.stderr[-500:]}")
+        for part in todo[2::3]:
+            part.replace(part.with_suffix(".zip"))
+    for path, compiled in found.items():
+        shutil.copyfile(compiled, path)
+
+
+def write_packages(root: Path, mirror: str, store: Path, out: Path) -> tuple[list[int], dict]:
+    """All that the worker loads, into a folder; megabytes, at first and in all, and the lock's
+    packages.
+    """
     lock = taken(mirror, store)
     packages = lock["packages"]
     pyodide = out / "pyodide"
@@ -217,12 +253,16 @@ def write_packages(root: Path, mirror: str, store: Path, out: Path) -> list[int]
         packages[name] = wheel(name, version, files, depends, imports, pyodide)
     rooms = [sources(root / "book" / name, root / "book") for name in ("workshop", "beyond")]
     (out / "workshop.zip").write_bytes(zipped(rooms[0] | rooms[1]))
+    compile_all(out, store)
+    for entry in packages.values():
+        entry["sha256"] = sha256((pyodide / entry["file_name"]).read_bytes())
     (pyodide / LOCK).write_text(json.dumps(lock), encoding="utf-8")
     shutil.copytree(PAGE, out, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
     at_first = [
         pyodide / name for name in (*CORE, LOCK, *(packages[n]["file_name"] for n in FIRST))
     ]
     every = [path for path in out.rglob("*") if path.is_file()]
-    return [
+    megabytes = [
         math.ceil(sum(path.stat().st_size for path in files) / 1e6) for files in (at_first, every)
     ]
+    return megabytes, packages

@@ -12,13 +12,15 @@ from dd_reader import has_script
 from lessons import chapters
 from offers import FIRST as FIRST_PAGE, offer
 
-from live.cells import kind, live_cells
+from live.cells import imported, kind, live_cells
 from live.packages import Refused, write_packages
 
 DATA = re.compile(r"""["']data/([\w.-]+)["']""")
 
 
-def live_page(text: str, notebook, page: str, megabytes: list[int], pages: list[str]) -> str:
+def live_page(
+    text: str, notebook, page: str, megabytes: list[int], pages: list[str], packages: dict
+) -> str:
     """A built page with its cells marked, and with the script that makes them run."""
     code = [cell for cell in notebook.cells if cell.cell_type == "code"]
     before, *parts = re.split(r'(?=<div class="cell )', text)
@@ -30,6 +32,7 @@ def live_page(text: str, notebook, page: str, megabytes: list[int], pages: list[
     cells = live_cells(notebook)
     content = {
         "cells": cells,
+        "ahead": [packages[name]["file_name"] for name in imported(cells, packages)],
         "data": sorted({name for cell in cells for name in DATA.findall(cell["source"])}),
         "megabytes": megabytes,
         "notebook": f"../_sources/{page}.ipynb",
@@ -54,7 +57,7 @@ def write(root: Path, site: Path, mirror: str, store: Path, out: Path) -> list[s
     try:
         shutil.copytree(site, part)
         folder = part / "_static" / "live"
-        megabytes = write_packages(root, mirror, store, folder)
+        megabytes, packages = write_packages(root, mirror, store, folder)
         (folder / "isolate.js").rename(part / "isolate.js")  # it reaches what is beside and below
         pages = {}
         for path in chapters(root):
@@ -64,7 +67,8 @@ def write(root: Path, site: Path, mirror: str, store: Path, out: Path) -> list[s
                 pages[page] = notebook
         for page, notebook in pages.items():
             target = part / f"{page}.html"
-            text = live_page(target.read_text("utf-8"), notebook, page, megabytes, list(pages))
+            text = target.read_text("utf-8")
+            text = live_page(text, notebook, page, megabytes, list(pages), packages)
             target.write_text(text, encoding="utf-8")
             for name in DATA.findall("\n".join(cell.source for cell in notebook.cells)):
                 (folder / "data").mkdir(exist_ok=True)

@@ -246,11 +246,10 @@ def footprint(value) -> str | None:
 
 
 class Progress:
-    """In place of `tqdm`: the page draws it, and may ask in between to stop."""
+    """In place of `tqdm`: the page draws it."""
 
     emit = None
     last = 0.0
-    pause = staticmethod(lambda: None)  # the worker's: it may hear what the page says
 
     def __init__(self, iterable=None, desc="", total=None, **options):
         self.iterable, self.desc, self.n = iterable, desc or "", 0
@@ -267,9 +266,8 @@ class Progress:
         if self.emit is None or now - Progress.last < 0.1:
             return
         Progress.last = now
-        heard = bool(Progress.pause())
         if self.total:
-            Progress.emit("progress", json.dumps([self.n / self.total, self.desc, heard]))
+            Progress.emit("progress", json.dumps([self.n / self.total, self.desc]))
 
     def __enter__(self):
         return self
@@ -314,10 +312,9 @@ class OneThread:
         return future
 
 
-def start(pause) -> None:
-    """Take the place of `tqdm` and of threads; `pause()` lets the worker hear the page."""
+def start() -> None:
+    """Take the place of `tqdm` and of threads."""
     concurrent.futures.ThreadPoolExecutor = OneThread
-    Progress.pause = staticmethod(pause)
     for name in ("tqdm", "tqdm.auto"):
         sys.modules[name] = types.ModuleType(name)
         vars(sys.modules[name]).update(tqdm=Progress, trange=trange)

@@ -3,7 +3,7 @@
 (() => {
   const island = document.getElementById("live-page");
   if (!island) return;
-  const { cells, data, megabytes, notebook, pages: known } = JSON.parse(island.textContent);
+  const { ahead, cells, data, megabytes, notebook, pages: known } = JSON.parse(island.textContent);
   const home = new URL(".", document.currentScript.src);
   const KEYS = "live:"; // one a page
   const MINE = KEYS + location.pathname;
@@ -675,8 +675,7 @@
       place.append(el);
       window.MathJax?.typesetPromise?.([el]);
     } else if (kind === "progress") {
-      const [share, what, hears] = JSON.parse(text);
-      cell.hears = hears;
+      const [share, what] = JSON.parse(text);
       cell.gauge ??= make("progress", { max: 1, "aria-label": `Progress of ${cell.name}` });
       cell.gauge.value = share;
       if (!cell.gauge.isConnected) cell.time.after(cell.gauge);
@@ -974,16 +973,21 @@
       cell.asked = true;
       waiting.add(cell);
     }
-    if (!worker) boot();
+    if (!worker) {
+      boot();
+      // While Python starts, all packages come, in the order in which cells import them: the browser
+      // keeps them for the worker, which would ask for each when a cell needs it.
+      for (const name of ahead.splice(0))
+        fetch(new URL(`pyodide/${name}`, home), { priority: "low" }).then((a) => a.blob(), () => {});
+    }
     face();
     next();
   }
 
-  // Ask what runs to stop. A worker hears it where memory is shared, or where a training looks up.
+  // Ask what runs to stop. A worker hears it where memory is shared.
   function ask() {
     if (interrupts) interrupts[0] = 2;
-    else worker?.postMessage({ stop: true });
-    return interrupts || running.hears;
+    return interrupts;
   }
 
   // What runs is out of date. It may end by itself; it has as long as a restart would take.

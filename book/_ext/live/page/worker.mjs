@@ -75,31 +75,9 @@ async function start(data) {
   python.runPython("import sys; sys.path.insert(0, '/book')");
   shut();
   kernel = python.pyimport("kernel");
-  kernel.start(python.runPython(PAUSE));
+  kernel.start();
   kernel.page = (text, buffers) => tell({ widget: JSON.parse(text), buffers: buffers.toJs() });
 }
-
-// While a training runs, its progress bar looks up: a page that is isolated from other sites shares
-// memory with the worker, and else a browser with JSPI lets the worker hear its messages meanwhile.
-let wanted = false;
-self.stopWanted = () => {
-  const stop = wanted;
-  wanted = false;
-  return stop;
-};
-const PAUSE = `
-import asyncio, js
-from pyodide.ffi import can_run_sync, run_sync
-
-def pause():
-    if can_run_sync():
-        run_sync(asyncio.sleep(0))
-        if js.stopWanted():
-            raise KeyboardInterrupt
-        return True
-
-pause
-`;
 
 // Packages, by their hashes in the lock. Pyodide itself only writes down which of them it refused.
 async function load(names) {
@@ -130,10 +108,7 @@ async function get(module) {
 
 // One message after the other, also where Python waits for a package.
 let last = Promise.resolve();
-self.onmessage = ({ data }) => {
-  if (data.stop) wanted = true;
-  else last = last.then(() => act(data));
-};
+self.onmessage = ({ data }) => (last = last.then(() => act(data)));
 
 async function act(message) {
   const { start: data, interrupts, run, source, above, how, widget, buffers, forms } = message;
@@ -150,7 +125,6 @@ async function act(message) {
       return tell({ ready: true });
     }
     if (!run) return pick(message.picked);
-    wanted = false;
     const began = performance.now();
     const show = (kind, text) => tell({ run, kind, text });
     const ok = await kernel.run.callKwargs(source, run, show, get, {
