@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from axe import violations
-from widget_pages import NEXT_FRAME, assert_exact_table
+from widget_pages import NEXT_FRAME, assert_exact_table, drag
 
 from ddlib.analysis import CLASSES, gains, mean_gradient
 from ddlib.learning import Weights, cases
@@ -100,6 +100,18 @@ def test_the_sum_over_all_samples_is_the_inertia():
     inner = (LOG_STEP**2 / 2 * 2 * g[0, 1, [9, 11]]).sum()
     counted = widget.curves["sum"]
     assert np.allclose(counted[:2], [0, inner]) and np.allclose(counted[2:], inner)  # beyond: none
+
+
+@pytest.mark.browser
+def test_the_scales_follow_the_pointer(page_with):
+    g = np.random.default_rng(0).normal(size=(2, 2, 21))
+    page = page_with(
+        WeighTheArm({"one": g, "other": g}, dict.fromkeys(("one", "other"), np.eye(2)))
+    )
+    for chart, place, reach in ((0, 0.75, 5), (1, 0.0, 10), (2, 0.3, 3)):
+        frame = page.locator(".chart path.frame").nth(chart).bounding_box()
+        drag(page, frame, (0.5, 0.5), (place, 0.5))
+        assert page.evaluate("document.querySelector('.ddlib-scales').view.get('reach')") == reach
 
 
 def test_paths_add_up_to_the_network():

@@ -153,6 +153,17 @@ def test_nothing_is_given_away_before_it_is_weighed(page_with, widget):
 
 
 @pytest.mark.browser
+def test_it_asks_for_a_guess_once(page_with, widget):
+    page = page_with(widget, calm=True)
+    said, weigh = page.locator("p.verdict"), page.get_by_role("button", name="Weigh")
+    weigh.press("Enter")
+    assert said.inner_text() == "A or B first?" and not page.locator(".guessed").is_visible()
+    assert weigh.evaluate("(button) => button === document.activeElement")
+    weigh.press("w")
+    assert said.text_content().startswith("A learnt this arm")
+
+
+@pytest.mark.browser
 def test_by_keyboard_alone(page_with, widget):
     page = page_with(widget, calm=True)
     page.get_by_role("application", name="arrow keys").focus()

@@ -34,7 +34,7 @@ def known(motion=1, load=0, doubled=False, friction=False):
     whole = with_load(CMU_DD_ARM_II, load).inverse_dynamics(q, qd, qdd) + rubbing
     return {
         f"{joint} {name}": x[:, j]
-        for name, x in {"whole torque": whole, "friction": rubbing}.items()
+        for name, x in {"actuation": whole, "friction": rubbing}.items()
         for j, joint in enumerate(("shoulder", "elbow"))
     }
 
@@ -46,7 +46,7 @@ def test_terms_add_up_to_the_torque(terms, levels):
         np.testing.assert_allclose(curves[name], torque, atol=1e-9)
     for joint in ("shoulder", "elbow"):
         parts = sum(curves[f"{joint} {term}"] for term in (*TERMS, "friction"))
-        np.testing.assert_allclose(parts, curves[f"{joint} whole torque"], atol=1e-9)
+        np.testing.assert_allclose(parts, curves[f"{joint} actuation"], atol=1e-9)
 
 
 def test_double_speed_is_four_times_every_term_but_friction(terms):
@@ -60,7 +60,7 @@ def test_double_speed_is_four_times_every_term_but_friction(terms):
         assert 1 < ratio < 2
         assert fast[f"{joint} ratio"] == pytest.approx(slow[f"{joint} ratio"])
         np.testing.assert_allclose(
-            fast[f"{joint} at single speed"], slow[f"{joint} whole torque"], atol=1e-9
+            fast[f"{joint} at single speed"], slow[f"{joint} actuation"], atol=1e-9
         )
 
 

@@ -223,6 +223,19 @@ def test_a_slow_drag_and_a_quick_click_begin_once(page_with, tuner):
     assert page.evaluate(SEEN)["before"] == {**START, "kp": pytest.approx(kp)}
 
 
+@pytest.mark.browser
+def test_time_stands_where_the_run_stopped(page_with, tuner):
+    page = page_with(tuner, query="?pidtuner=kp:9000", calm=True)
+    time = page.get_by_role("slider", name="Time")
+    time.press("End")
+    page.evaluate(NEXT_FRAME)
+    stopped = TIMES[page.evaluate(SEEN)["stopped"]]
+    assert stopped < 3 and float(time.input_value()) == pytest.approx(stopped)
+    page.locator(".arm.now.stopped").wait_for(state="attached")
+    page.get_by_role("button", name="Play").click()  # from the start again
+    assert float(time.input_value()) == 0
+
+
 DISTURBED = [
     {"kd": 60.0, "ki": 1500.0, "load": True, "dry": True},
     {"kd": 60.0, "ki": 1500.0, "load": True, "limit": "yes"},

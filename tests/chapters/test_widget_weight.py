@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from widget_pages import NEXT_FRAME, assert_curves, shown_values
+from widget_pages import NEXT_FRAME, assert_curves, drag, shown_values
 
 from workshop.chapters.widgets.weight import WANTED, OneWeight
 
@@ -51,6 +51,14 @@ def test_the_page_computes_what_python_does(page_with, widget):
     widget.size = page.evaluate("document.querySelector('.ddlib-weight').view.get('size')")
     assert widget.weight == 8 and widget.size > 10
     assert_curves(page, widget.curves)
+
+
+@pytest.mark.browser
+def test_the_ball_is_dragged(page_with, widget):
+    page = page_with(widget)
+    frame = page.locator(".chart path.frame").first.bounding_box()
+    drag(page, frame, (0.375, 0.5), (0.4, 0.2), (0.55, 0.5))  # −2 is at 6 of 16
+    assert shown_values(page)[0] == pytest.approx(0.8, abs=0.05)
 
 
 @pytest.mark.browser

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from widget_pages import assert_curves, settings
+from widget_pages import assert_curves, drag, settings
 
 from ddlib.setups import STATE_FEEDBACK, split
 from workshop.chapters.widgets.window import HiddenTorque
@@ -46,3 +46,13 @@ def test_the_page_hides_and_uncovers_it(page_with, hidden):
     page.get_by_label("Uncover the torque").click()
     page.get_by_label("Joint").select_option(label="elbow")
     assert_curves(page, hidden.curves_at(joint="elbow", sample=76, shown=True))
+
+
+@pytest.mark.browser
+def test_the_window_follows_the_pointer(page_with, hidden):
+    page = page_with(hidden, query="?hidden-torque=sample:75")
+    for chart, place in ((0, 0.5), (2, 0.75)):  # the position, the torque
+        frame = page.locator(".chart path.frame").nth(chart).bounding_box()
+        drag(page, frame, (0.25, 0.5), (place, 0.5))
+        sample = page.evaluate("document.querySelector('.ddlib-hidden').view.get('sample')")
+        assert sample == pytest.approx(299 * place, abs=2)

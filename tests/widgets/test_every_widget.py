@@ -40,8 +40,8 @@ SHOWN = """() => {
 no part of it."""
 
 SAME = f"(wanted) => JSON.stringify(({SHOWN})()) === JSON.stringify(wanted)"
-HANDLES = "input, select, [role=slider], [role=spinbutton], [role=application], svg[tabindex], "
-HANDLES += ".ddlib-widget button"
+HANDLES = "input, select, [role=slider], [role=button], [role=spinbutton], [role=application], "
+HANDLES += "svg[tabindex], .ddlib-widget button"
 IN_BAR = "(el) => Boolean(el.closest('.bar, .chart'))"
 ADDRESS = "(link) => location.href.split('#')[0] === link.split('#')[0]"
 

@@ -1,5 +1,6 @@
 // Draws charts.
 
+import { draggable, withinOf } from "./dragging.js";
 import { make, put, short, swatch } from "./elements.js";
 import { around, format, labels, powerText, ticks } from "./numbers.js";
 import { readerOf, unitOf } from "./reading.js";
@@ -260,6 +261,15 @@ export function chart(view, panel) {
     put(span, { visibility: "visible", x: short(from), width: short(to - from) });
   }
 
+  // The line or the shaded span follows the pointer: move(value of the axis, which is linear).
+  function drag(move) {
+    svg.style.cursor = "ew-resize";
+    draggable(svg, withinOf(panel.cursor.length === 2 ? span : cursor), ({ clientX }) => {
+      const part = (clientX - svg.getBoundingClientRect().left - left) / (right - left);
+      move(ends[0] + Math.min(1, Math.max(0, part)) * (ends[1] - ends[0]));
+    });
+  }
+
   const told = (v, a, b) => (panel.y_scale === "power" ? powerText(v) : format(v, a, b));
   function describe(all) {
     const parts = curves.map((curve) => {
@@ -287,5 +297,5 @@ export function chart(view, panel) {
   // The place of a point of the chart, px; for a class with more to draw in it.
   const at = (a, b) => [x.place(a), y.place(b)];
 
-  return { el, panel, resize, redraw, describe, point, rename, at };
+  return { el, panel, resize, redraw, describe, point, rename, at, drag };
 }

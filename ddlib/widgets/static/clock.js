@@ -2,17 +2,17 @@
 
 import { buttonOf, make, write } from "./elements.js";
 
-// `draw(now)` shows a moment (s), words() what stands after it; with reduced motion each press of *Play*
-// shows the moment half a second later, and nothing moves by itself. `rate()` is how many of its seconds pass in one; again() goes on
-// after it has changed; stopped() is called when time stands still.
-export function clockOf(view, { at, end, step, rate = () => 1, stopped = () => {} }, draw, words = () => "") {
+// `draw(now)` shows a moment (s); with reduced motion each press of *Play* shows the moment half a second
+// later, and nothing moves by itself. `rate()` is how many of its seconds pass in one; again() goes on
+// after it has changed; stopped() is called when time stands still, which it does at `last()` if that is before the end.
+export function clockOf(view, { at, end, step, rate = () => 1, stopped = () => {}, last = () => end }, draw) {
   const id = `${view.id}-time`;
   const output = make("output", { for: id });
   const slider = make("input", { id, type: "range", min: 0, max: end, step });
   const play = buttonOf("Play", () => {
-    if (calm.matches) stand(now < end ? Math.min(end, now + rate() / 2) : 0);
+    if (calm.matches) stand(now < last() ? Math.min(last(), now + rate() / 2) : 0);
     else if (frame) pause();
-    else start(now < end ? now : 0);
+    else start(now < last() ? now : 0);
   });
   const el = make("div", { class: "slider" }, make("label", { for: id }, "Time"), output, slider);
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
@@ -20,9 +20,10 @@ export function clockOf(view, { at, end, step, rate = () => 1, stopped = () => {
   let from = 0; // the moment that stands for 0 s
   let frame = 0;
   function show() {
-    draw(now);
-    slider.value = now;
-    write(output, `${(now / rate()).toFixed(2)}\u00a0s${words()}`);
+    const shown = Math.min(now, last());
+    draw(shown);
+    slider.value = shown;
+    write(output, `${(shown / rate()).toFixed(2)}\u00a0s`);
     slider.setAttribute("aria-valuetext", output.textContent);
   }
   function pause() {
@@ -33,9 +34,9 @@ export function clockOf(view, { at, end, step, rate = () => 1, stopped = () => {
   }
   function run(moment) {
     const passed = Math.max(0, moment - from) / 1000; // a frame may bear an earlier stamp
-    now = Math.min(end, rate() * passed);
+    now = Math.min(last(), rate() * passed);
     show();
-    if (now < end) frame = requestAnimationFrame(run);
+    if (now < last()) frame = requestAnimationFrame(run);
     else pause();
   }
   function start(time) {

@@ -10,6 +10,12 @@ export const besideOf = (handle) => ({ clientX, clientY }) => {
   return Math.hypot(...away) <= Math.max(GRIP, box.width / 2);
 };
 
+// Whether a pointer is above, within or below a band or an upright line.
+export const withinOf = (band) => ({ clientX }) => {
+  const { x, width } = band.getBoundingClientRect();
+  return Math.abs(clientX - x - width / 2) <= Math.max(GRIP, width / 2);
+};
+
 // By mouse or pen anywhere; by touch from where `near(event)` holds, or sideways, or by a tap, so that
 // a vertical swipe from elsewhere scrolls the page. begin(event) is called where a drag begins,
 // move(event) at every place that it reaches.

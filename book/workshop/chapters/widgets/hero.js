@@ -318,13 +318,15 @@ function build({ model, el }) {
   }
 
   // What is said
+  let asked = false; // for a guess, by a first press
   const said = make("p", { class: "verdict", role: "status" });
   const kg = (x) => `${number(x)} kg m²`;
   const right = networks.reduce((a, b) => (Math.abs(a.weight - arm) < Math.abs(b.weight - arm) ? a : b)).name;
   function tell() {
     const guess = get("guess");
     if (!get("weighed")) {
-      return said.replaceChildren(guess ? `You say ${guess}. Now weigh.` : "Pick A or B, then weigh.");
+      const first = asked ? "A or B first?" : "Pick A or B, then weigh.";
+      return said.replaceChildren(guess ? `You say ${guess}. Now weigh.` : first);
     }
     const weights = networks.map(({ name, learnt, weight }) => `${name} learnt ${learnt} and weighs ${kg(weight)}`);
     const verdict = guess && (guess === right ? "You were right. " : "Fooled. ");
@@ -342,6 +344,7 @@ function build({ model, el }) {
       else badge.removeAttribute("aria-disabled");
     });
     el.classList.toggle("weighed", weighed);
+    el.classList.toggle("asked", asked && !guess && !weighed);
     write(weigh, weighed ? "Again" : "Weigh");
     tell();
     drawScales();
@@ -368,7 +371,13 @@ function build({ model, el }) {
     };
     swinging = requestAnimationFrame(turn);
   }
-  const toggle = () => set(get("weighed") ? { weighed: false, guess: "" } : { weighed: true });
+  function toggle() {
+    const again = get("weighed");
+    const ask = !again && !asked && !get("guess");
+    asked = ask;
+    if (ask) return show();
+    set(again ? { weighed: false, guess: "" } : { weighed: true });
+  }
   const weigh = buttonOf("Weigh", toggle, { class: "weigh" });
   rows.forEach(({ name, badge }) => {
     badge.addEventListener("click", () => pick(name));
@@ -496,6 +505,8 @@ function build({ model, el }) {
 
   const frame = frameOf({ el, key: "hero", title: spec.title, linked: Boolean(model.kernelless), reset: () => {
     el.classList.remove("taken");
+    asked = false;
+    show();
     open();
     start();
   }, code: () => "" }); // prettier-ignore

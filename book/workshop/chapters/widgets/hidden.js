@@ -28,4 +28,12 @@ computes((view) => {
   };
 });
 
-extras.push((view) => view.el.classList.add("ddlib-hidden"));
+extras.push((view) => {
+  view.el.classList.add("ddlib-hidden");
+  const [whole, , torque] = view.charts;
+  const [from, to] = [whole.panel.x[0], whole.panel.x.at(-1)];
+  const last = whole.panel.x.length - 1;
+  for (const { drag } of [whole, torque]) {
+    drag((time) => view.set({ sample: Math.round((last * (time - from)) / (to - from)) }));
+  }
+});

@@ -8,7 +8,7 @@ import { JOINTS, NAMES, pickAndPlace, placesOf } from "ddlib/engine.js";
 import { armTorque, frictionTorque } from "ddlib/physics.js";
 import { armsOf } from "./stage.js";
 
-const [SUM, FRICTION, BEFORE] = ["whole torque", "friction", "at single speed"];
+const [SUM, FRICTION, BEFORE] = ["actuation", "friction", "at single speed"];
 const LETTERS = "ABCD";
 
 // The torque of a state by its origin, a pair for each term: what is left of the equations of the
@@ -125,7 +125,7 @@ extras.push((view) => {
     if (!first) return "";
     const best = top();
     const right = first === best ? "Yes" : `Not ${first}`;
-    const largestTerm = `${right}: the largest at the elbow is ${best}, ${newtons(rms(best))}. ${WHY[best] ?? ""}`.trim();
+    const largestTerm = `${right}: the largest at the elbow is ${best}, ${newtons(rms(best))} (root mean square). ${WHY[best] ?? ""}`.trim();
     if (!second) return largestTerm;
     const own = second === BETS[1] ? "Yes" : "No";
     const ratio = `${own}, the ratio stays. At double speed every term is four times as large.`;

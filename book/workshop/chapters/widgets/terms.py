@@ -22,9 +22,9 @@ from ddlib.widgets.table import Live
 _HERE = Path(__file__).parent
 
 _TERMS = ("centrifugal", "coupling", "Coriolis", "inertial")  # in no order that gives one away
-_SUM = "whole torque"
+_SUM = "actuation"
 _FRICTION = "friction"
-_BEFORE = "at single speed"  # the whole torque, for comparison
+_BEFORE = "at single speed"  # the actuation torque, for comparison
 _DONE = np.arange(100) + 0.5  # parts of the motion at which the curves are sampled, %
 _LOADS = (0, 5, 10)  # kg in the hand
 

@@ -94,7 +94,9 @@ extras.push((view) => {
   const box = [-0.06 * far, -0.82 * far, 1.05 * far, 0.36 * far];
   const stage = armsOf(lengths, kinds, box, "The arm from above. Pale: the arm with your previous setting");
   const end = (loop.periods - 1) * loop.step;
-  const clock = clockOf(view, { at: 1, end, step: loop.step * loop.every }, draw, () => (over ? ", stopped" : ""));
+  const last = () => (view.now.log.stopped ?? Infinity) * view.now.seconds;
+  const moments = { at: 1, end, step: loop.step * loop.every, last: () => Math.min(end, last()) };
+  const clock = clockOf(view, moments, draw);
   const verdict = make("p", { class: "verdict", role: "status" });
   const remedy = make("p", { class: "remedy", role: "status" });
   const chapter = "Poles and margins";
@@ -132,7 +134,6 @@ extras.push((view) => {
   view.top.addEventListener("pointerdown", grasp);
   for (const end of ["pointerup", "pointercancel"]) addEventListener(end, letGo);
 
-  let over = false; // whether the run was stopped before
   const along = (list, k) => {
     const i = Math.min(Math.floor(k), list.length - 1);
     const next = list[Math.min(i + 1, list.length - 1)];
@@ -145,8 +146,7 @@ extras.push((view) => {
     stage.place("wanted", along(now.wanted, k));
     stage.place("ghost", along(ghost.log.q, k));
     stage.place("now", along(now.log.q, k));
-    over = now.log.stopped !== null && k >= now.log.stopped;
-    stage.arms.get("now").el.classList.toggle("stopped", over);
+    stage.arms.get("now").el.classList.toggle("stopped", time >= last());
     for (const c of view.charts) c.point(time);
   }
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 
 import numpy as np
 
@@ -11,7 +12,10 @@ from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.hinton import CENTRE
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
-from workshop.chapters.widgets.pencil import SCRIPT, STYLE
+from ddlib.widgets.scripts import bundle
+from workshop.chapters.widgets.pencil import STYLE
+
+_HERE = Path(__file__).parent
 
 _ENTRIES = {
     "shoulder": (0, 0),
@@ -32,7 +36,7 @@ class WeighTheArm(CurveWidget):
         The same names -> mean mass matrix that belongs to it, kg m², shape (2, 2).
     """
 
-    _esm, _css = SCRIPT, STYLE
+    _esm, _css = bundle(_HERE / "pencil.js", _HERE / "weigh.js"), STYLE
 
     def __init__(self, gradients: Mapping[str, np.ndarray], inertia: Mapping[str, np.ndarray]):
         names = list(gradients)

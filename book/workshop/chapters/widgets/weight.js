@@ -88,6 +88,7 @@ extras.push((view) => {
   const next = make("path", { class: "next" });
   const landing = make("circle", { class: "next", r: 6 });
   chart.el.querySelector(":scope > svg").append(points, now, next, landing);
+  for (const { drag } of view.charts) drag((weight) => view.set({ weight }));
   const landed = () => Math.min(high, Math.max(low, view.get("weight") + changeOf(view)));
 
   function step() {
