@@ -229,7 +229,9 @@ def clouds(
 def by_case(
     x, cases: Mapping[str, np.ndarray], x_label: str, y_label: str, alt: str, height: float = 1.3
 ) -> Illustration:
-    """One quantity in several cases: a panel each, the case as its title, one below the other, on one scale.
+    """One quantity in several cases: a panel each, titled by the case, one below the other.
+
+    All have one scale.
 
     Parameters
     ----------

@@ -1,6 +1,7 @@
 """The readers' notebooks: plain markdown with the book's numbers, and code that runs."""
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -119,7 +120,10 @@ def test_an_error_of_a_check_is_the_readers_lines_and_the_message():
         start = "from workshop.errors import short_errors; short_errors()\n"
         start += "from ddlib.dynamics import CMU_DD_ARM_II as arm\n"
         ipython = [sys.executable, "-m", "IPython", "--no-banner", "--colors=NoColor"]
-        made = subprocess.run([*ipython, "-c", start + code], capture_output=True, text=True)
+        env = {**os.environ, "PYTHONPATH": str(ROOT / "book")}
+        made = subprocess.run(
+            [*ipython, "-c", start + code], capture_output=True, text=True, env=env
+        )
         return [line for line in made.stdout.splitlines() if line]
 
     *_, where, line, message = told("def mine(q):\n    return arm.mass_matrix(q)\nmine([0])")
