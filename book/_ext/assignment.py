@@ -263,7 +263,7 @@ def notebook(path: Path, varied: bool = False):
             count += 1
         elif below and is_check(cell):
             source = JUDGE.sub("", cell.source).strip("\n")
-            test = _between("HIDDEN TESTS", "assert check.right")
+            test = _between("HIDDEN TESTS", "from exercises import judge\n\nassert judge.right")
             source = f"from judge import check\n\n{source}\n{test}"
             cells.append(_cell("code", source, f"check-{count}", points=POINTS["check"]))
             said = _between("SOLUTION", _quoted(words, explained[count - 1]))
@@ -439,10 +439,10 @@ def write(lesson: str, course: Path, students: Iterable[str] = (), keys: bool = 
 
 
 def nbgrader(course: Path, *asked: str) -> str:
-    """Run nbgrader in a course's folder; what it said."""
-    done = subprocess.run(
-        [sys.executable, "-m", "nbgrader", *asked], cwd=course, capture_output=True, text=True
-    )
+    """Run nbgrader in a course's folder; what it said. It looks for alembic on the path."""
+    path = os.pathsep.join((str(Path(sys.executable).parent), os.environ.get("PATH", "")))
+    how = {"cwd": course, "env": {**os.environ, "PATH": path}, "capture_output": True}
+    done = subprocess.run([sys.executable, "-m", "nbgrader", *asked], text=True, **how)
     if done.returncode:
         raise ValueError(f"nbgrader {' '.join(asked)}:\n{done.stderr}")
     return done.stderr

@@ -21,7 +21,7 @@ MATHJAX = "tex-svg-full.js"
 # or lies in a folder whose name begins with a dot.
 KINDS = {
     *(".py", ".pyi", ".ipynb", ".md", ".bib", ".yml", ".toml", ".txt", ".json", ".csv", ".npz"),
-    *(".js", ".mjs", ".css", ".woff2", ".svg", ".png", ".cff", ".jinja"),
+    *(".js", ".mjs", ".css", ".woff2", ".svg", ".png", ".cff", ".jinja", ".sh"),
 }
 KEPT_CACHES = 3
 

@@ -140,7 +140,7 @@ def judging(exercise: Callable) -> Callable:
     """The `check(number, mine, *given)` of a lesson, from what gives each `Exercise`.
 
     It sets `mine` back to dots where it was called, so that no answer is judged twice: not if the
-    cell with the next answer raises, either. `check.right` says whether the last answer was.
+    cell with the next answer raises, either.
     """
 
     def check(number: int, mine, *given) -> None:
@@ -148,13 +148,20 @@ def judging(exercise: Callable) -> Callable:
         caller = sys._getframe(1).f_globals
         if caller.get("mine", ...) is mine:
             caller["mine"] = ...
-        check.right = judge(mine, exercise(number, *given))
+        judge(mine, exercise(number, *given))
 
     return check
 
 
-def judge(mine, exercise: Exercise) -> bool:
-    """Say what is to be said to an answer, `...` as long as there is none: is it right?"""
+def judge(mine, exercise: Exercise) -> None:
+    """Say what is to be said to an answer, `...` as long as there is none.
+
+    `judge.right` says whether the last answer was right.
+    """
+    judge.right = _judged(mine, exercise)
+
+
+def _judged(mine, exercise: Exercise) -> bool:
     if mine is ...:
         display(Waiting(exercise))
         return False
