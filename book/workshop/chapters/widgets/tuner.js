@@ -111,7 +111,7 @@ extras.push((view) => {
     return make("span", {}, icon, text);
   };
   const legend = make("div", { class: "legend" });
-  legend.append(key("now", "now"), key("ghost", "your previous setting"), key("wanted", "wanted"));
+  legend.append(key("ghost", "your previous setting"), key("wanted", "wanted"));
   const row = make("div", { class: "time" }, clock.play, clock.el);
   const scene = make("div", { class: "scene" }, stage.svg, legend, row);
   const first = make("div", { class: "charts first" }, ...view.charts.slice(0, 2).map((c) => c.el), scene);
