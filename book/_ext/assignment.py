@@ -263,7 +263,7 @@ def notebook(path: Path, varied: bool = False):
             count += 1
         elif below and is_check(cell):
             source = JUDGE.sub("", cell.source).strip("\n")
-            test = _between("HIDDEN TESTS", "from exercises import judge\n\nassert judge.right")
+            test = _between("HIDDEN TESTS", "from exercises import verdict\n\nassert verdict.right")
             source = f"from judge import check\n\n{source}\n{test}"
             cells.append(_cell("code", source, f"check-{count}", points=POINTS["check"]))
             said = _between("SOLUTION", _quoted(words, explained[count - 1]))

@@ -109,7 +109,9 @@ def test_every_question_is_there_and_no_solution(handed_out):
         assert [e.starter for e in found] == [seen(c.source).strip() for c in starters], name
         checks = [cell for cell in made.cells if cell.id.startswith("check-")]
         assert len(checks) == len(found)
-        assert all("HIDDEN TESTS\nfrom exercises import judge\n" in cell.source for cell in checks)
+        assert all(
+            "HIDDEN TESTS\nfrom exercises import verdict\n" in cell.source for cell in checks
+        )
         texts = [seen(cell.source) for cell in made.cells]
         assert sum(bool(re.match(r"\*\*\d+\. ", text)) for text in texts) == len(found), name
         everything = "\n".join(texts)

@@ -15,6 +15,7 @@ import reprlib
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 from IPython.display import display
@@ -153,12 +154,13 @@ def judging(exercise: Callable) -> Callable:
     return check
 
 
-def judge(mine, exercise: Exercise) -> None:
-    """Say what is to be said to an answer, `...` as long as there is none.
+verdict = SimpleNamespace(right=False)
+"""Of the last answer."""
 
-    `judge.right` says whether the last answer was right.
-    """
-    judge.right = _judged(mine, exercise)
+
+def judge(mine, exercise: Exercise) -> None:
+    """Say what is to be said to an answer, `...` as long as there is none; keep `verdict`."""
+    verdict.right = _judged(mine, exercise)
 
 
 def _judged(mine, exercise: Exercise) -> bool:
@@ -168,14 +170,14 @@ def _judged(mine, exercise: Exercise) -> bool:
     try:
         answer = _taken(mine, exercise)
         with np.errstate(all="ignore"):
-            verdict = _verdict(answer, exercise)
+            told = _verdict(answer, exercise)
     except NotJudged as reason:
         print(reason)
     except Exception as error:  # whatever an answer raises where it is used
         print(f"Not judged: with your answer the check raised {_named(error)}")
     else:
-        print(verdict + _echo(answer, exercise))
-        return verdict.startswith("Right")
+        print(told + _echo(answer, exercise))
+        return told.startswith("Right")
     return False
 
 
