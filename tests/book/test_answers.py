@@ -202,6 +202,6 @@ def test_no_page_says_to_run_a_cell_again(parsed):
     judged = 0
     for page in CHAPTERS:
         places = parsed(page).select(".exercise-answer")
-        assert places, page
+        assert len(places) >= 3, page
         judged += sum(place.has_attr("data-judge") for place in places)
     assert judged > len(CHAPTERS)

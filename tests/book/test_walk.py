@@ -9,7 +9,7 @@ from open_cells import CHANGES, SHORT, execute, exercises, imports, lesson, run
 from workshop.chapters import exercises as engine
 
 DATA = ROOT / "book" / "data"  # goes with the notebooks
-MOST_SECONDS = 40  # of one core with plain kernels, for the open cells of a lesson
+MOST_SECONDS = 30  # of one core, for the open cells of a lesson
 LIBRARIES = {"ddlib", "numpy", "scipy", "sympy", "torch", "control", "matplotlib", "ipywidgets"}
 STANDARD = {"collections", "dataclasses", "fractions", "itertools", "math", "time", "warnings"}
 

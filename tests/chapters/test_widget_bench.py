@@ -74,8 +74,12 @@ def test_folded_by_pointer_then_tilted_by_keys(page_with, widget):
     assert page.locator(".flap").bounding_box()["width"] < 0.9 * flat  # the paper follows
     page.mouse.move(4, y, steps=5)
     page.mouse.up()
-    page.get_by_role("slider", name="Tilt").focus()
-    page.keyboard.press("End")
+    lift, tilt = (page.get_by_role("slider", name=name) for name in ("Lift", "Tilt"))
+    lift.press("ArrowUp")
+    page.evaluate(NEXT_FRAME)
+    assert page.locator(".verdict").inner_text().startswith("Lifted: the joint stands still.")
+    lift.press("ArrowDown")
+    tilt.press("End")
     page.evaluate(NEXT_FRAME)
     assert (
         page.locator(".verdict").inner_text() == "Tilted: a steady speed. Only the odd jar fills."

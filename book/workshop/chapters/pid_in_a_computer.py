@@ -40,6 +40,24 @@ def _exercise(number: int, *given: float) -> Exercise:
             unit="s",
             unless=[(lambda smooth: smooth < 0, "a time constant is above zero.")],
         )
+    if number == 3:
+        inertia, damper, smooth, period, late = given
+        seeming = inertia - damper * (smooth + period + late * period)
+        return Exercise(
+            "number",
+            seeming,
+            "a late damper takes inertia away.",
+            [
+                (
+                    2 * inertia - seeming,
+                    "expand the late velocity. Which sign has its second term?",
+                ),
+                (seeming + damper * period, "the difference and the hold are late as well."),
+                (inertia - seeming, "that is what the damper takes away."),
+            ],
+            "by how much is the damper's torque late, all in all?",
+            unit="kg m²",
+        )
     spring, most, weight = given
     step = np.rad2deg(most / (weight * spring))
     slips = [
