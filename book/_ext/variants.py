@@ -45,10 +45,19 @@ ARM = 'Arm.from_links("mine", Link(14.0, 0.5, 0.22, 0.4), Link({}, 0.4, {}, {}))
 ARMS = [
     ARM.format(m, c, i) for m in (6.0, 10.0, 14.0) for c in (0.06, 0.1, 0.15) for i in (0.2, 0.5)
 ]
+
+
+def _extents(seed: int) -> str:
+    draw = random.Random(seed)
+    return str([[draw.randint(0, 45), draw.randint(0, 45)] for _ in range(6)])
+
+
 CHOICES = {
     "dynamics": {"upper_arm": UPPER, "forearm": FOREARM},
     "feedback": {"viscous": FRICTION, "period": ["0.0005", "0.001", "0.00125", "0.002"]},
     "feedforward": {"viscous": FRICTION, "seconds": ["2.5", "3.0", "3.5"], "forearm": FOREARM},
+    "trajectories-and-recording": {"extents": [_extents(seed) for seed in range(40)]},
+    "backpropagation": {"seed": [str(n) for n in range(1, 40)]},
     "window-networks": {"window": ODD, "hidden": [str(n) for n in range(5, 15)]},
     "hinton-diagrams": {"window": ODD, "hidden_units": [str(n) for n in range(5, 17)]},
     "convolution-filters": {"window": ODD},
@@ -138,8 +147,9 @@ def main() -> int:
             own = found(lesson, asked.only)
             kept["differ"][lesson] = differ([solve(path(lesson), s) for s in ({}, *own)])
             kept[lesson] = own
-            ordered = ["differ", *(each.name for each in lessons(ROOT))]
-            kept = {name: kept[name] for name in ordered if name in kept}
+            ordered = [each.name for each in lessons(ROOT)]
+            counts = {name: kept["differ"][name] for name in ordered if name in kept["differ"]}
+            kept = {"differ": counts} | {name: kept[name] for name in ordered if name in kept}
             text = yaml.safe_dump(kept, sort_keys=False, width=200, allow_unicode=True)
             FILE.write_text(HEAD + text, encoding="utf-8")
         else:

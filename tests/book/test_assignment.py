@@ -19,6 +19,7 @@ import assignment
 import handed_in
 import solved
 import variants
+from lessons import entries
 
 LESSONS = [*assignment.lessons()]
 QUICK = ("dynamics", "window-size")
@@ -210,14 +211,20 @@ def test_a_variant_of_each_lesson_is_solved(name):
     assert found and all(one.said.startswith("Right") for one in found)
 
 
-LECTURES = (
-    (ROOT / "book" / "teaching.md").read_text("utf-8").partition("## A class on one lesson")[0]
-)
 HOMEWORK = [
     (name, int(number))
-    for name, numbers in re.findall(r"\{exercise\}`([\w-]+): ([\d, ]+)`", LECTURES)
+    for name, numbers in re.findall(
+        r"\{exercise\}`([\w-]+): ([\d, ]+)`", (ROOT / "book" / "teaching.md").read_text("utf-8")
+    )
     for number in numbers.split(", ")
 ]
+
+
+def test_homework_has_answers_that_differ():
+    """By the table on the page, five of ten or more, in each lesson of the walk that is taught."""
+    counts = {name: said.split(", ") for name, said in entries(ROOT, "variants")["differ"].items()}
+    assert {*counts} == {*VARIED}
+    assert min(int(counts[name][number - 1]) for name, number in HOMEWORK) >= 5
 
 
 @pytest.mark.slow

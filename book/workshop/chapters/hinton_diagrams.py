@@ -170,7 +170,6 @@ def _exercise(number: int, given) -> Exercise:
             count=given,
         )
     elif number == 4:
-
         begun, stepped = (
             np.concatenate([w.direct_weights, w.hidden_weights]) for w in (given[0][0], given[1][0])
         )
