@@ -38,6 +38,12 @@ class PageWidget(anywidget.AnyWidget):
     still = Still(help="the starting state as a picture", read_only=True).tag(sync=True)
     still_alt = t.Unicode(read_only=True).tag(sync=True)
 
+    _parameters = ()  # traits that a reader sets
+
+    def __repr__(self):
+        values = (f"{name}={getattr(self, name)!r}" for name in self._parameters)
+        return f"{type(self).__name__}({', '.join(values)})"
+
     def _keep(self, **values):
         """Set traits that are read-only for others."""
         for name, value in values.items():
@@ -88,10 +94,6 @@ class CurveWidget(PageWidget):
 
     _esm = bundle("curves.js")
     _css = styles()
-
-    def __repr__(self):
-        values = (f"{name}={getattr(self, name)!r}" for name in self._parameters)
-        return f"{type(self).__name__}({', '.join(values)})"
 
     baked = t.Bytes(help="the curves at every setting", read_only=True).tag(sync=True)
     request = t.Int(0, help="counts the page's requests for exact curves").tag(sync=True)

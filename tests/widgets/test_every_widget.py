@@ -26,6 +26,11 @@ def test_what_a_choice_cannot_be_is_refused(kind):
         assert getattr(widget, name) == before
 
 
+@by_kind
+def test_it_says_what_it_is(kind):
+    assert repr(sample_of(kind)).startswith(f"{kind.__name__}(")
+
+
 SHOWN = """() => {
   const all = (what) => [...document.querySelectorAll(`.ddlib-widget ${what}`)];
   const fields = all("input:not([id$=-time]), select");
