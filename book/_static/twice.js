@@ -89,12 +89,11 @@
       told.textContent = "Type your name or number first: letters, digits and . @ - _ only.";
       return name.focus();
     }
-    const head = ["student", "time", "question", "key", "answer", "right", "begun", "ended"];
+    const head = ["student", "time", "question", "key", "answer", "begun", "ended"];
     const rows = Object.keys(TIMES).filter(taken).flatMap((time) =>
       forms.map((one, k) => {
         const { begun, ended } = kept[time];
-        const known = taken("after") ? one.right : "";
-        return [kept.student, time, k + 1, one.form.id, answer(time, one), known, begun, ended];
+        return [kept.student, time, k + 1, one.form.id, answer(time, one), begun, ended];
       }),
     );
     const text = [head, ...rows].map((row) => `${row.join(",")}\n`).join("");
