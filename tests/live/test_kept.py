@@ -167,6 +167,7 @@ def test_another_book_of_the_server_is_left_alone(reader):
     tab = reader()
     tab.evaluate("() => localStorage.setItem('live:/other/a.html', 'theirs')")
     tab.evaluate("() => localStorage.setItem('quiz:/', '[\"quiz-1\"]')")
+    tab.evaluate("() => localStorage.setItem('quiz-twice:/', '{}')")
     tab.get_by_role("switch").check()
     field(tab, 0).fill("a = 10")
     assert saved(tab)["pages"].keys() == {"a.html"}

@@ -9,7 +9,7 @@
   const MINE = KEYS + location.pathname;
   const FOLDER = MINE.slice(0, MINE.lastIndexOf("/") + 1); // the book's: a server may have others
   const ROOT = new URL("../../", home).pathname; // the site's
-  const [REACT, QUIZ] = [`live-react:${ROOT}`, `quiz:${ROOT}`];
+  const [REACT, QUIZ, TWICE] = ["live-react", "quiz", "quiz-twice"].map((key) => `${key}:${ROOT}`);
   const EXTENTS = `live-extents:${FOLDER.slice(KEYS.length)}`;
   const FORMAT = "direct-drive-work-1";
 
@@ -246,7 +246,7 @@
   }
 
   function erase() {
-    if (!confirm("Erase your changes, what you solved and the quiz, on all pages of this book?")) return;
+    if (!confirm("Erase your changes, what you solved and all quizzes, on all pages of this book?")) return;
     try {
       for (const key of Object.keys(localStorage)) if (key.startsWith(FOLDER)) write(key, null);
     } catch {
@@ -254,6 +254,7 @@
     }
     mine = work();
     write(QUIZ, null);
+    write(TWICE, null);
     dispatchEvent(new StorageEvent("storage", { key: QUIZ })); // its questions hear of it
     pick("");
     worker?.postMessage({ picked: "" });
