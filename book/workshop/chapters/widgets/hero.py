@@ -100,7 +100,7 @@ class Hero(PageWidget):
     """
 
     _esm = bundle(_HERE / "hero.js")
-    _css = styles(_HERE / "hero.css")
+    _css = styles(_HERE / "hero.css", _HERE / "balance.css")
 
     weights = t.Bytes(help="both networks' weights as float32", read_only=True).tag(sync=True)
     guess = t.Enum(("", "A", "B"), "", help="which one has met the arm").tag(sync=True)

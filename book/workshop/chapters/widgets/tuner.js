@@ -90,7 +90,7 @@ extras.push((view) => {
 
   // The arm, and time
   const far = lengths[0] + lengths[1];
-  const kinds = ["ghost", "wanted", "now"];
+  const kinds = ["ghost", "wanted", "real"];
   const box = [-0.06 * far, -0.82 * far, 1.05 * far, 0.36 * far];
   const stage = armsOf(lengths, kinds, box, "The arm from above. Pale: the arm with your previous setting");
   const end = (loop.periods - 1) * loop.step;
@@ -145,8 +145,8 @@ extras.push((view) => {
     const k = time / now.seconds;
     stage.place("wanted", along(now.wanted, k));
     stage.place("ghost", along(ghost.log.q, k));
-    stage.place("now", along(now.log.q, k));
-    stage.arms.get("now").el.classList.toggle("stopped", time >= last());
+    stage.place("real", along(now.log.q, k));
+    stage.arms.get("real").el.classList.toggle("stopped", time >= last());
     for (const c of view.charts) c.point(time);
   }
 
