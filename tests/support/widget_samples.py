@@ -123,7 +123,7 @@ def _arguments() -> dict[str, dict]:
     pair = tuple(Weights.random(2, 7, hidden=3))
     rows = rng.normal(size=(2, 5, 9))
     rounds = [_guess(*rows)] * 2
-    windows, torque = cases(last, 7)
+    windows, _ = cases(last, 7)
     return {
         "CurveWidget": {
             "function": wave, "parameters": options(), "panels": kinds(), "alt": "Waves",

@@ -1,4 +1,5 @@
-// What TurnTheParabola (knob.py) adds to a CurveWidget: charts in a line that fits a screen with the handle.
+// What TurnTheParabola (knob.py) and UnitFromFiveStarts (starts.py) add to a CurveWidget: three charts in a
+// line that fits a screen with the handle.
 
 import { extras } from "ddlib/curves.js";
 

@@ -17,6 +17,7 @@ from ddlib.widgets.scripts import bundle, styles
 from workshop.report.pencil import knobs, turned
 
 _HERE = Path(__file__).parent
+SCRIPT, STYLE = bundle(_HERE / "knob.js"), styles(_HERE / "knob.css")
 _EVERY = 2  # samples of a torque: more are not seen
 _JOINTS = ("shoulder", "elbow")
 
@@ -34,7 +35,7 @@ class TurnTheParabola(CurveWidget):
         Torque that the arm's inertia takes along this motion, N m.
     """
 
-    _esm, _css = bundle(_HERE / "knob.js"), styles(_HERE / "knob.css")
+    _esm, _css = SCRIPT, STYLE
 
     def __init__(self, networks: Mapping[str, TorqueModel], windows, inertial):
         self._networks, self._windows, self._inertial = networks, windows, inertial
