@@ -22,8 +22,8 @@ function placesIn(wide) {
     return {
       s, wide, high: 548 * s,
       base: [x(122), y(444)], metre: 335 * s, thick: 27 * s, arcs: [[68, 86, 102], [48, 64, 79]].map((r) => r.map((v) => v * s)),
-      torque: [x(0), y(532)], says: [x(110), y(532)],
-      elbow: { from: x(205), to: x(345), y: y(40), name: [x(205), y(24)] },
+      torque: [x(0), y(20)], says: [x(0), y(46)], // where no arc comes
+      elbow: { from: x(230), to: x(370), y: y(40), name: [x(230), y(24)] },
       rows: { from: x(462), to: x(756), A: y(92), B: y(424), tall: 54 * s, badge: x(414), dot: 4.6 * s },
       chord: { from: x(482), to: x(736), y: y(258), name: [x(440), y(232)] },
       note: [x(609), y(518)],
