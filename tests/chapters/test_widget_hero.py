@@ -104,7 +104,8 @@ def test_rubber_stops_keep_the_arm_in_the_picture(moved, widget):
 COVERED = """(() => {
   const box = (el) => el.getBoundingClientRect();
   const words = [...document.querySelectorAll('.legend-truth, .legend-told')].map(box);
-  return [...document.querySelectorAll('.letter, .arc:not(g[class^=legend] *)')].map(box).filter((a) =>
+  const drawn = [...document.querySelectorAll('.letter, .arc:not(g[class^=legend] *)')];
+  return drawn.map(box).filter((a) =>
     words.some((b) => a.x < b.right && b.x < a.right && a.y < b.bottom && b.y < a.bottom));
 })()"""
 """Badges and arcs that lie on the words that explain them."""

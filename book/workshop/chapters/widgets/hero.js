@@ -51,7 +51,7 @@ const rise = (path) => path.map((q, k) => q - path[0] - ((path.at(-1) - path[0])
 function build({ model, el }) {
   const spec = model.get("spec");
   const { width, arm, networks: specs } = spec;
-  dress(el, spec.title, "ddlib-hero");
+  dress(el, spec.title, "ddlib-hero", "quiet");
   const values = numbersOf(model.get("weights"), "Float32");
   const each = values.length / specs.length;
   const networks = specs.map((network, k) => {

@@ -10,7 +10,7 @@ const POSE = [1.15, -0.75]; // rad, of the arm that is drawn
 
 extras.push((view) => {
   const { el, charts } = view;
-  el.classList.add("ddlib-weigh");
+  el.classList.add("ddlib-weigh", "quiet");
   Object.assign(view, { tall: 165, left: 44 });
   const control = (name) => view.controls.querySelector(`[id$="-${name}"]`).closest(".choice, .slider");
 
