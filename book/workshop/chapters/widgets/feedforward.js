@@ -72,7 +72,7 @@ computes((view) => {
 // Figure 2-1, whose boxes and arrows say what is switched.
 extras.push((view) => {
   const { el } = view;
-  el.classList.add("ddlib-feedforward", "quiet", "over");
+  el.classList.add("ddlib-feedforward", "quiet");
   view.tall = 190;
   const text = (x, y, words, kind = "") => make("text", { x, y, class: kind }, words);
   const box = (name, x, y, ...lines) => {
@@ -113,6 +113,7 @@ extras.push((view) => {
     text(130, 138, "−", "sign"), text(336, 104, "+", "sign"), text(240, 160, "measured motion", "small"),
   );
   view.top.prepend(svg);
+  el.append(el.querySelector(":scope > .frame-bar"));
 
   const follow = () => {
     const on = (name) => view.get(name);

@@ -86,7 +86,8 @@ extras.push((view) => {
   const loop = model.get("loop");
   const { lengths } = loop.plant;
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
-  el.classList.add("ddlib-tuner", "quiet", "over");
+  el.classList.add("ddlib-tuner", "quiet");
+  view.tall = 215;
 
   // The arm, and time
   const far = lengths[0] + lengths[1];
