@@ -73,7 +73,7 @@ computes((view) => {
 extras.push((view) => {
   const { el } = view;
   el.classList.add("ddlib-feedforward", "quiet");
-  view.tall = 190;
+  view.tall = 180;
   const text = (x, y, words, kind = "") => make("text", { x, y, class: kind }, words);
   const box = (name, x, y, ...lines) => {
     const rows = lines.map((line, k) => text(x, y + 4.5 + 15 * (k - (lines.length - 1) / 2), line));
