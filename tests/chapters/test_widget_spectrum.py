@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from widget_pages import assert_exact_table, settings
+from widget_pages import NEXT_FRAME, assert_exact_table, settings
 
 from ddlib.analysis import basis
 from ddlib.learning import Directions
@@ -54,3 +54,14 @@ def test_shares_name_the_derivative(widget):
         expected = np.eye(6)[share]
         shown = widget.at_grid(direction=direction, width=11)["shares"]
         np.testing.assert_allclose(shown, expected, atol=1e-3)
+
+
+@pytest.mark.browser
+def test_the_film_stands_still_between_presses_with_reduced_motion(page_with, widget):
+    page = page_with(widget, calm=True)
+    epochs, epoch = STUDY["epochs"][1:], "document.querySelector('.ddlib-widget').view.get('epoch')"
+    for place in (0, 10):  # it stood at the end
+        page.get_by_role("button", name="Play").click()
+        page.wait_for_timeout(500)
+        page.evaluate(NEXT_FRAME)
+        assert page.evaluate(epoch) == epochs[place]

@@ -197,7 +197,7 @@ export function chart(view, panel) {
   function layout() {
     bottom = height - 36;
     y = axis(low, high, panel.y_scale, bottom, 6, 30);
-    left = 9 + Math.max(...y.texts.map((t) => 7 * t.length + (t.startsWith("−") ? 3 : 0)));
+    left = Math.max(view.left ?? 0, 9 + Math.max(...y.texts.map((t) => 7 * t.length + (t.startsWith("−") ? 3 : 0))));
     right = width - 10;
     x = across();
     xs = panel.x.map((v) => short(x.place(v)));
@@ -226,7 +226,7 @@ export function chart(view, panel) {
 
   function resize() {
     width = Math.max(160, Math.floor(el.clientWidth));
-    height = Math.round(Math.min(260, Math.max(160, width * 0.6)));
+    height = Math.round(Math.min(view.tall ?? 260, Math.max(160, width * 0.6)));
     put(svg, { width, height, viewBox: `0 0 ${width} ${height}` });
     layout();
   }

@@ -18,7 +18,8 @@ const QUIET = 700; // ms without a change after which the figure is described an
 // get(name), parameter(name), set({name: value}), after (called with the curves after each redraw), charts,
 // controls, top, numbers (a list between controls and charts), words (returns texts to be spoken), say(text),
 // schedule() (redraws in the next frame), pad (its parts), keep(name, read, write) (a part of the state that is no
-// parameter, see frame.js) with changed(), and resets (called by Reset).
+// parameter, see frame.js) with changed(), resets (called by Reset), tall and left (px: most height of a chart, and least
+// room left of its axis).
 export const extras = [];
 
 const KERNEL = "The kernel sends exact values. Until they come, you see values computed beforehand.";

@@ -13,7 +13,7 @@ from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.hinton import CENTRE, JOINTS, share_panel
 from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.parts.parameters import Choice
-from workshop.chapters.widgets.pencil import SCRIPT, STYLE
+from workshop.chapters.widgets.knob import SCRIPT, STYLE
 
 _SHARES = dict(enumerate(("pos.", "vel.", "acc.", "jerk", "rest")))
 
