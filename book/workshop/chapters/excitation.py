@@ -14,9 +14,9 @@ from ddlib.learning import TrainingSet
 from ddlib.setups import Setup, split, true_states
 from ddlib.simulation import LOG_STEP, Recording
 from ddlib.widgets.base import CurveWidget
-from ddlib.widgets.hinton import CENTRE
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice, Parameter
+from workshop.chapters.widgets import CENTRE
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured, judged, median
 from workshop.report.studies.excitation import DRIVES, later, training_set

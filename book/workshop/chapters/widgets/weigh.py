@@ -9,10 +9,10 @@ import numpy as np
 
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.base import CurveWidget
-from ddlib.widgets.hinton import CENTRE
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
 from ddlib.widgets.scripts import bundle
+from workshop.chapters.widgets import CENTRE
 from workshop.chapters.widgets.pencil import STYLE
 
 _HERE = Path(__file__).parent
