@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
 
 from ddlib import figures
-from ddlib.analysis import classify, decompose, gains, mean_gradient
+from ddlib.analysis import classify, gains, mean_gradient
 from ddlib.dynamics import IMI_ARM
 from ddlib.learning import TrainingSet, Weights, cases as cases_of, p_value, train_ensemble
 from ddlib.setups import (
@@ -17,7 +16,6 @@ from ddlib.setups import (
     STATE_FEEDBACK,
     WINDOWS,
     split,
-    train_windows,
     true_states,
 )
 from ddlib.simulation import LOG_STEP
@@ -30,9 +28,6 @@ from workshop.report.studies.random_starts import RANGES, SOLVED, agreement, cho
 
 PRINTED = "0 to 1"
 """Range of the inputs that the report prints."""
-
-SHOWN = (1.0, 0.3, 0.1, INITIAL)
-"""Ranges whose unit the first figure shows."""
 
 
 @cache
@@ -53,45 +48,6 @@ def values(reading: str, size: float, width: int, *path: str, **where) -> np.nda
 def named(reading: str, size: float, width: int = 21, layer: str = "hidden", **where):
     """Share of a layer's filters with a name, for each network."""
     return 1 - values(reading, size, width, layer, "names", "not analysable", **where)
-
-
-# --- one unit, four starts --------------------------------------------------------------------
-
-
-def four_starts(unit: int = 0, seed: int = 0) -> figures.Illustration:
-    """The same hidden unit, trained from random weights of four sizes, with its parts.
-
-    One network each, by state feedback: an example, trained as the page is made.
-    """
-    recording = STATE_FEEDBACK.record()
-    x = 10 * np.arange(-10, 11)
-    rows = {}
-    for size in SHOWN:
-        setup = replace(STATE_FEEDBACK, initial=size)
-        model, *_ = train_windows(setup, recording, 21, 1, seed=seed, progress=False)
-        start = Weights.random(1, 21, initial=size, seed=seed)
-        rows[size] = [w.hidden_weights[0, unit, 0] for w in (start, model.weights)]
-
-    look = figures.looks(["even part", "odd part"])
-
-    def draw(figure):
-        axes = figure.subplots(1, len(rows))
-        for axis, (size, (before, after)) in zip(axes, rows.items()):
-            axis.plot(x, before, color=figures.FAINT, lw=1, label="before training")
-            parts = decompose(after)
-            axis.plot(x, after, color=figures.INK, lw=2, label="after training")
-            for name, part in {"even part": parts.even, "odd part": parts.odd}.items():
-                axis.plot(x, part, label=name, **look[name].line)
-            axis.set(title=f"start: ±{size:g}", xlabel="time, ms")
-        axes[0].set_ylabel("weight")
-        figures.legend_above(figure, *axes[0].get_legend_handles_labels())
-
-    names = "; ".join(f"±{size:g}: {classify(after)}" for size, (_, after) in rows.items())
-    alt = (
-        "Weights of one hidden unit over its window of 21 samples, before and after training, in "
-        f"four panels from the largest to the smallest start, with their names: {names}."
-    )
-    return figures.illustrate(draw, alt, 7.0, 2.5)
 
 
 # --- which start agrees with the report -------------------------------------------------------
