@@ -88,7 +88,7 @@ def _draw_panel(ax, panel: Panel, curves):
         ax.axvline(*places, color=FAINT, linewidth=1)
     elif places:
         ax.axvspan(*sorted(places), color=TONES["window"], alpha=0.2, linewidth=0)
-    ax.set(title=panel.y_label, xlabel=panel.x_label, yscale=panel.y_scale)
+    ax.set(title=panel.y_label, xlabel=panel.x_label, xscale=panel.x_scale, yscale=panel.y_scale)
     if panel.ticks:
         ax.set_xticks(*zip(*panel.ticks))
     if panel.y_range:

@@ -26,8 +26,9 @@ class Panel:
         Quantity and unit.
     x : array_like
         Where the curves are sampled; increases.
-    y_scale : {"linear", "log"}
-        Stems and bars stand on zero, so theirs is linear.
+    x_scale, y_scale : {"linear", "log"}
+        Scales of the axes. Stems and bars stand on zero, so their `y_scale` is linear; bars
+        are equally wide, so their `x_scale` is, too.
     kind : {"line", "stems", "bars"}
         Lines; dots on stalks from zero; bars from zero, side by side where there are several
         curves.
@@ -54,6 +55,7 @@ class Panel:
     curves: Sequence[str] | Mapping[str, str]
     x_label: str
     x: Sequence[float]
+    x_scale: str = "linear"
     y_scale: str = "linear"
     kind: str = "line"
     fixed: Mapping[str, Sequence[float]] | None = None
@@ -72,8 +74,11 @@ class Panel:
         if x.ndim != 1 or x.size < 2 or (np.diff(x) <= 0).any():
             raise ValueError(f"x {what} must increase, got shape {x.shape}")
         one_of(f"kind {what}", self.kind, ("line", "stems", "bars"))
-        scales = ("linear", "log") if self.kind == "line" else ("linear",)
-        one_of(f"y_scale {what}", self.y_scale, scales)
+        both = ("linear", "log")
+        one_of(f"x_scale {what}", self.x_scale, ("linear",) if self.kind == "bars" else both)
+        one_of(f"y_scale {what}", self.y_scale, both if self.kind == "line" else ("linear",))
+        if self.x_scale == "log":
+            number(f"x {what}", x[0], 0.0, open_low=True)
         fixed = {
             str(name): finite_array(f"{name} {what}", values)
             for name, values in (self.fixed or {}).items()

@@ -119,7 +119,7 @@ export function chart(view, panel) {
   const el = make("div", { class: "chart" }, title, legend, svg);
 
   const gap = Math.min(...panel.x.slice(1).map((x, i) => x - panel.x[i]));
-  const room = kind === "bars" || kind === "stems" ? gap / 2 : 0;
+  const room = kind === "bars" || (kind === "stems" && panel.x_scale === "linear") ? gap / 2 : 0;
   const ends = [panel.x[0] - room, panel.x.at(-1) + room];
   let low, high, x, y, xs, left, right, bottom, base, width, height;
   const whole = wholeRange();
@@ -182,8 +182,8 @@ export function chart(view, panel) {
 
   // The horizontal axis, with marks so far apart that their texts have room.
   function across() {
-    for (let room = 52; ; room += 10) {
-      const made = axis(...ends, false, left, right, room);
+    for (let room = panel.x_scale === "linear" ? 52 : 34; ; room += 10) {
+      const made = axis(...ends, panel.x_scale === "log", left, right, room);
       const [at, long] = [made.marks.map(made.place), made.texts.map((text) => text.length)];
       const free = at.every((place, i) => !i || place - at[i - 1] > 3.5 * (long[i] + long[i - 1]) + 6);
       if (free || room > right - left) return made;

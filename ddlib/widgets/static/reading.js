@@ -2,7 +2,7 @@
 // choose.
 
 import { make, onKeys, put, short, swatch, write } from "./elements.js";
-import { format } from "./numbers.js";
+import { format, powerText } from "./numbers.js";
 
 // A label such as "time, s" as a quantity and what follows a number.
 export function unitOf(label) {
@@ -32,7 +32,9 @@ export function readerOf(plot) {
   function nameOf(i) {
     const tick = panel.ticks.find(([at]) => at === panel.x[i]);
     if (tick) return tick[1];
-    return `${quantity} ${format(panel.x[i], low, high, unit)}`;
+    const { x, x_scale } = panel;
+    if (x_scale === "linear") return `${quantity} ${format(x[i], low, high, unit)}`;
+    return `${quantity} ${powerText(Math.log10(x[i]))}${unit && `\u00a0${unit}`}`;
   }
   function show(i) {
     index = Math.min(panel.x.length - 1, Math.max(0, i));
