@@ -7,23 +7,17 @@ from functools import cache
 import numpy as np
 
 from ddlib import figures
-from ddlib.analysis import classify, gains, mean_gradient
-from ddlib.dynamics import IMI_ARM
-from ddlib.learning import TrainingSet, Weights, cases as cases_of, p_value, train_ensemble
+from ddlib.learning import p_value
 from ddlib.setups import (
     INITIAL,
     SETUPS,
     STATE_FEEDBACK,
     WINDOWS,
-    split,
-    true_states,
 )
-from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, quote, significant
 from workshop.chapters import planted
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured, judged, mean, median
-from workshop.report.studies.nulls import TRIAL
 from workshop.report.studies.random_starts import RANGES, SOLVED, agreement, chosen
 
 PRINTED = "0 to 1"
@@ -224,54 +218,6 @@ def velocity_table() -> Table:
         shares = [shares_beside(r, s, "velocity")[kind].mean() for r in SETUPS for s in sizes]
         rows.append((label, f"{100 * np.mean(shares):.0f} %"))
     return Table(("torques", "velocity filters, of the hidden ones"), rows)
-
-
-def torques_table() -> Table:
-    """The walk's network by the torques it learns: acceleration filters, and its inertia."""
-    this, other = results.read("excitation")["cells"][0]["arm"], f"{other_inertia():.1f}"
-    whose = {"own": ("this arm's", f"{this:.1f}"), "another arm": ("another arm's", other)}
-    whose["exchanged"] = "this arm's, joints exchanged", "–"
-    rows = [
-        (whose[kind][0], f"{100 * share:.0f} %", f"{np.median(inertia):.1f}", whose[kind][1])
-        for kind, (share, inertia) in other_torques().items()
-    ]
-    heads = ("acceleration filters", "shoulder in the network, kg m²", "in that arm, kg m²")
-    return Table(("torques, 8 networks each", *heads), rows)
-
-
-@cache
-def other_torques(members: int = 8) -> dict[str, tuple[float, np.ndarray]]:
-    """Acceleration filters in the walk's network, and its inertia, by the torques it learns.
-
-    The arm's own, those that another arm would need along the same motion, and the arm's with
-    shoulder and elbow exchanged: the share of hidden filters, and by the mean gradient the
-    shoulder's inertia in each network, kg m². Trained as the page is made.
-    """
-    recording = TRIAL.record()
-    training = split(recording)[0]
-    windows, _ = cases_of(training, 21)
-    states = np.moveaxis(true_states(training, TRIAL), -1, 0)
-    wanted = {
-        "own": training.tau[:, training.motion],
-        "another arm": IMI_ARM.inverse_dynamics(*states),
-        "exchanged": training.tau[:, training.motion, ::-1],
-    }
-    by_torques = {}
-    for name, torque in wanted.items():
-        given = TrainingSet.from_arrays(windows, torque.reshape(-1, 2), scaling=TRIAL.scaling)
-        model, *_ = train_ensemble(
-            Weights.random(members, 21, initial=INITIAL), given, rate=TRIAL.rate / 21,
-            momentum=TRIAL.momentum, warm_up=TRIAL.warm_up, epochs=TRIAL.epochs, progress=False,
-        )  # fmt: skip
-        share = (classify(model.weights.hidden_weights) == "acceleration").mean()
-        by_torques[name] = float(share), gains(mean_gradient(model, windows), LOG_STEP)[:, 0, 0, 2]
-    return by_torques
-
-
-def other_inertia() -> float:
-    """Mean inertia of the shoulder, kg m², of the other arm along the same motion."""
-    states = true_states(split(TRIAL.record())[0], TRIAL)
-    return float(IMI_ARM.mass_matrix(states[..., 0])[..., 0, 0].mean())
 
 
 # --- what a small start costs -----------------------------------------------------------------
