@@ -113,11 +113,11 @@ stripped: $(TESTED)
 	@echo "==> Notebooks are stored without outputs"
 	$(STRIP) --verify $(NOTEBOOKS)
 
-# Lessons' open cells, as they stand, run on the foreign machine.
+# The notebooks' cells, as they stand, run on the foreign machine.
 unit: $(TESTED)
 	@echo "==> Unit and property tests"
 	$(PYTEST) -n $(JOBS) --dist worksteal $(SLOWEST) -m "not built and not browser" \
-	  --deselect tests/book/test_walk.py::test_open_cells_run_alone
+	  -k "not (test_walk and cells_run)"
 
 notebooks: $(TESTED)  ## every notebook in a fresh process, warnings are errors
 	@echo "==> Every notebook in a fresh process, warnings are errors"

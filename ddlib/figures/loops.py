@@ -39,14 +39,15 @@ def poles_and_bode(
         for name, system in systems.items():
             instance(f"{kind}[{name!r}]", system, control.lti.LTI)
     w = decay * np.geomspace(1 / 8, 25, 400)  # rad/s
+    gains = np.geomspace(1e-3, 4, 3000)
+    paths = {name: control.root_locus_map(L, gains=gains).loci for name, L in loops.items()}
 
     def draw(figure: Figure):
         places = [["loci", "gain"], ["loci", "phase"]]
         loci, *pair = figure.subplot_mosaic(places).values()
         for name, L in loops.items():
             look = looks(loops)[name].line
-            paths = control.root_locus_map(L, gains=np.geomspace(1e-3, 4, 3000)).loci
-            loci.plot(paths.real, paths.imag, **look)
+            loci.plot(paths[name].real, paths[name].imag, **look)
             now = control.feedback(L).poles()
             loci.plot(now.real, now.imag, "o", color=look["color"])
             look |= {"dB": True, "ax": np.c_[pair], "title": "", "legend_loc": False}

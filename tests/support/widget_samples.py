@@ -130,7 +130,6 @@ def _arguments() -> dict[str, dict]:
             "scalars": [Scalar("from", "Begin", "s", digits=1)], "code": "{shape}, {gain}",
         },
         "FilterBuilder": {"unit": np.arange(-10, 11.0) ** 2},
-        "FilterExplorer": {"models": models, "members": (0, 1), "step": 0.01},
         "FoldBench": {"rows": {"up": rows[0, 0]}, "step": 0.01, "motion": np.zeros((60, 3))},
         "Hero": {"pair": [_twin("A", single[7], 6.0), _twin("B", single[7], 0.0)], "arm": 6.0},
         "HiddenTorque": {"recording": last},

@@ -6,7 +6,7 @@ import { choice, padOf, presetsOf, slider } from "./controls.js";
 import { dress, freshId, make, numbersOf, report, safely, write } from "./elements.js";
 import { filled, frameOf, python } from "./frame.js";
 import { kernelOf } from "./kernel.js";
-import { format, powerText } from "./numbers.js";
+import { format } from "./numbers.js";
 import { placeOf, show, valueNear, valueOfText } from "./parameters.js";
 import { curvesAt, readTable, samplesOf, split } from "./table.js";
 
@@ -105,11 +105,10 @@ function build({ model, el }) {
     due = 0;
     view.curves = spec.live ? { ...current(), ...live(view) } : current();
     controls.forEach((control) => control.update());
-    for (const { name, output, unit, digits, scale } of scalars) {
+    for (const { name, output, unit, digits } of scalars) {
       const { low, high } = spec.curves.find((curve) => curve.name === name);
       const [value] = view.curves[name];
-      const text = scale === "power" ? powerText(value) : format(value, low, high, unit, digits);
-      write(output, Number.isNaN(value) ? "none" : text);
+      write(output, Number.isNaN(value) ? "none" : format(value, low, high, unit, digits));
     }
     el.dataset.values = spec.live ? "computed" : view.exact ? "exact" : "baked";
   }

@@ -10,10 +10,10 @@ import numpy as np
 from ddlib.learning import TorqueModel
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.base import CurveWidget
-from ddlib.widgets.hinton import CENTRE
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice, Parameter
 from ddlib.widgets.scripts import bundle, styles
+from workshop.chapters.widgets import CENTRE
 from workshop.report.pencil import knobs, turned
 
 _HERE = Path(__file__).parent

@@ -14,10 +14,10 @@ from ddlib.learning import TorqueModel
 from ddlib.setups import JOINT_DAMPING
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.base import CurveWidget
-from ddlib.widgets.hinton import CENTRE
 from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.parts.parameters import Choice
 from ddlib.widgets.scripts import bundle, styles
+from workshop.chapters.widgets import CENTRE
 from workshop.report.pencil import moment_filters, written
 
 _HERE = Path(__file__).parent
