@@ -37,8 +37,9 @@ from ddlib.figures.style import fixed
 NOTE = (
     "> **Your copy of a notebook of the book.** Numbers with a dotted line below them are the "
     "book's, from the run that made its pages: they stay when you change code. Figures, tables and "
-    "widgets are the book's, too, until you run their cells. JupyterLab's *Settings > Save Widget "
-    "State Automatically* keeps yours when you save. Code that only keeps numbers is folded."
+    "widgets are the book's, too, until you run their cells. Where JupyterLab says *model not "
+    "found*, run the cell; its *Settings > Save Widget State Automatically* keeps your widgets "
+    "when you save. Code that only keeps numbers is folded."
 )
 SETUP = """# @title Where the book is not installed (in Colab, say), this fetches it: a minute, once
 import importlib.util, os, subprocess, sys

@@ -78,7 +78,7 @@ def test_cells_are_open_folded_or_a_folded_solution():
 
 def test_outputs_are_taken_as_any_viewer_shows_them():
     new = nbformat.v4
-    widget = {"data": {VIEW: {"model_id": "m"}, "text/html": "<img>", "text/plain": "<object at 0x7f>"}}
+    widget = {"data": {VIEW: {"model_id": "m"}, "text/html": "<img>", "text/plain": "Widget()"}}
     svg = '<svg viewBox="0 0 72 9" aria-label="A &amp; B" style="width:1.00in;"></svg>'
     both = f'<div class="ddlib-figure"><div>{svg}</div><div class="narrow"><svg></svg></div></div>'
     kinds = {
