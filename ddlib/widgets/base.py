@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from html import escape
 
 import anywidget
 import numpy as np
@@ -48,6 +49,12 @@ class PageWidget(anywidget.AnyWidget):
         """Set traits that are read-only for others."""
         for name, value in values.items():
             self.set_trait(name, value)
+
+    def _repr_html_(self) -> str | None:
+        """The still picture, for viewers that show no widget."""
+        if self.still:
+            return f'<img src="{self.still}" alt="{escape(self.still_alt)}">'
+        return None
 
 
 class CurveWidget(PageWidget):

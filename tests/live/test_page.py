@@ -118,8 +118,9 @@ def test_work_is_judged_and_kept_on_the_device_alone(browser, site, tmp_path):
     run(mine)
     yours = tab.locator(".live-beside .live-output").first
     assert yours.inner_text().startswith("Right") and "Solved: 1 of " in summary.inner_text()
-    slider = tab.get_by_role("slider").last  # the load: of three cells, one differs from the next
-    slider.press("ArrowRight")
+    tab.get_by_role("textbox").first.evaluate("(e) => e.scrollIntoView({ block: 'center' })")
+    tab.get_by_role("combobox").select_option("load, N m")  # of three cells, one differs
+    tab.get_by_role("slider").press("ArrowRight")
     tab.get_by_role("button", name="Run what follows").click()
     tab.wait_for_timeout(200)
     tab.locator(IDLE).wait_for(timeout=300_000)

@@ -58,9 +58,10 @@ def set_up(tab, given: Iterable[dict], name: str = "a.html") -> str:
     about = {"cells": given, "ahead": [], "pages": ["a.html", "b.html"], "megabytes": [1, 1]}
     data = json.dumps(about | {"data": [], "notebook": ""}).replace("</", "<\\/")
     field = '<div class="cell" data-live="{id}"><div class="cell_input"></div></div>'
+    field = f"<section>{field}</section>"
     shown = "".join(field.format(**cell) for cell in given)
     scripts = "".join(f'<script src="{script}.js"></script>' for script in ("follow", "live"))
-    text = f"{HEADER}<main><section>{shown}</section></main>"
+    text = f"{HEADER}<main>{shown}</main>"
     text += f'<script type="application/json" id="live-page">{data}</script>{scripts}'
 
     def answer(route):

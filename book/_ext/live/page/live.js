@@ -371,7 +371,7 @@
     cell.el.classList.remove("is-asked-below"); // the page's own field is no longer all there is
     input.hidden = true;
     input.after(cell.area, tools);
-    if (cell.handles?.length) cell.el.closest("section").after(sliders(cell)); // it stays in view
+    if (cell.handles?.length) cell.el.closest("section").after(strip(cell));
     fit(cell);
   }
 
@@ -379,7 +379,7 @@
     cell.area.rows = cell.area.value.split("\n").length;
     if (cell.area.value === cell.source) cell.from = undefined;
     cell.el.classList.toggle("live-changed", cell.area.value !== cell.source);
-    for (const update of cell.sliders ?? []) update();
+    cell.handle?.();
   }
 
   function setText(cell, value) {
@@ -425,34 +425,57 @@
 
   const written = (value, { digits }) => value.toFixed(digits).replace(/(\.\d+?)0+$/, "$1");
 
-  function sliders(cell) {
-    cell.sliders = [];
-    const rows = cell.handles.map((handle, k) => {
-      const id = `live-handle-${cell.place}-${k}`;
-      const range = make("input", { type: "range", id, min: handle.low, max: handle.high });
-      range.step = handle.step;
-      const shown = make("output", { for: id });
-      const name = handle.unit ? `${handle.label}, ${handle.unit}` : handle.label;
-      range.addEventListener("input", () => {
-        const spot = spotOf(cell, handle);
-        if (!spot) return;
-        const value = written(Number(range.value), handle);
-        cell.area.setRangeText(value, spot.start, spot.end, "preserve");
-        changed(cell);
-      });
-      cell.sliders.push(() => {
-        const spot = spotOf(cell, handle);
-        range.disabled = !spot;
-        if (!spot) return (shown.textContent = "–");
-        if (Number(range.value) !== spot.value) range.value = spot.value;
-        shown.textContent = spot.value;
-        range.setAttribute("aria-valuetext", `${shown.textContent} ${handle.unit}`.trim());
-      });
-      return make("div", {}, make("label", { for: id }, name), range, shown);
+  // One handle in a strip that stays in view, and a choice of those that move the cell in view.
+  function strip(cell) {
+    const choice = make("select", { "aria-label": "Handle: a number of Change this" });
+    const range = make("input", { type: "range", id: "live-handle" });
+    const shown = make("output", { for: range.id });
+    const name = ({ label, unit }) => (unit ? `${label}, ${unit}` : label);
+    const options = cell.handles.map((handle, k) => make("option", { value: k }, name(handle)));
+    choice.append(...options);
+    const panel = make("div", { class: "live-handles" }, choice, range, shown);
+    const chosen = () => cell.handles[choice.value];
+    const update = () => {
+      const { low, high, step, unit } = chosen();
+      const spot = spotOf(cell, chosen());
+      Object.assign(range, { min: low, max: high, step, value: spot?.value ?? low, disabled: !spot });
+      shown.textContent = spot?.value ?? "–";
+      range.setAttribute("aria-label", name(chosen()));
+      range.setAttribute("aria-valuetext", `${shown.textContent} ${unit}`.trim());
+    };
+    choice.addEventListener("change", update);
+    range.addEventListener("input", () => {
+      const spot = spotOf(cell, chosen());
+      if (!spot) return;
+      cell.area.setRangeText(written(Number(range.value), chosen()), spot.start, spot.end, "preserve");
+      changed(cell);
     });
-    const title = make("summary", {}, "Handles: each moves a number of Change this");
-    const panel = make("details", { class: "live-handles" }, title, make("div", {}, ...rows));
-    panel.open = matchMedia("(min-width: 48rem)").matches; // on a phone it would cover the figure
+    const offer = ({ place }) => {
+      const graph = follow.graph(cells);
+      const before = cell.area.value;
+      const moves = (handle) => {
+        const { start, end } = spotOf(cell, handle) ?? {};
+        const now = `${before.slice(0, start)}9e9${before.slice(end)}`;
+        const only = new Map([[cell.place, follow.renamed(before, now)]]);
+        return follow.after(cells, graph, [cell.place], only).has(place);
+      };
+      const those = options.filter((_, k) => moves(cell.handles[k]));
+      if (!those.length) those.push(...options);
+      const kept = options[choice.value];
+      choice.replaceChildren(...those);
+      if (those.includes(kept)) kept.selected = true;
+      update();
+    };
+    const inView = new IntersectionObserver(
+      (entries) => {
+        const entry = entries.findLast(({ isIntersecting }) => isIntersecting);
+        if (!entry || panel.querySelector(":focus-visible")) return; // it is in use by the keyboard
+        offer(cells.find(({ el }) => el === entry.target));
+      },
+      { rootMargin: "-40% 0px" },
+    );
+    for (const { el } of cells) inView.observe(el);
+    cell.handle = update;
     return panel;
   }
 
@@ -526,6 +549,7 @@
   const OUTPUTS = '.cell_output :is(.output, .ddlib-widget, script[type*="widget-view"])';
   function fresh(cell) {
     const first = (el) => !el.closest(".live-output") && !el.parentElement.closest(".output, .ddlib-widget");
+    cell.el.style.minBlockSize = `${cell.el.offsetHeight}px`; // nothing below moves until it ran
     cell.built ??= [...cell.el.querySelectorAll(OUTPUTS)].filter(first);
     for (const el of cell.built) {
       const mark = new Comment();
@@ -827,6 +851,7 @@
 
   function released(cell, time = "") {
     cell.el.classList.remove("live-running");
+    cell.el.style.minBlockSize = "";
     cell.gauge?.remove();
     if (cell.time) cell.time.textContent = time;
   }
