@@ -52,19 +52,26 @@ BESIDE = """window.Worker = class {
 """In place of the worker with Pyodide: what the test makes of a message."""
 
 
-def set_up(tab, given: Iterable[dict], name: str = "a.html") -> str:
-    """Have a tab find a page with such cells and nothing else; its address."""
+def set_up(
+    tab, given: Iterable[dict], name: str = "a.html", editor: str = "", style: str = ""
+) -> str:
+    """Have a tab find a page with such cells and nothing else; its address.
+
+    Without an editor's script, cells are plain fields.
+    """
     given = [{"kind": "open", "needs": "", "names": {}, **cell} for cell in given]
     about = {"cells": given, "ahead": [], "pages": ["a.html", "b.html"], "megabytes": [1, 1]}
     data = json.dumps(about | {"data": [], "notebook": ""}).replace("</", "<\\/")
     field = '<div class="cell" data-live="{id}"><div class="cell_input"></div></div>'
     shown = "".join(field.format(**cell) for cell in given)
     scripts = "".join(f'<script src="{script}.js"></script>' for script in ("follow", "live"))
-    text = f"{HEADER}<main><section>{shown}</section></main>"
+    text = f"<style>{style}</style>{HEADER}<main><section>{shown}</section></main>"
     text += f'<script type="application/json" id="live-page">{data}</script>{scripts}'
 
     def answer(route):
         path = packages.PAGE / route.request.url.rpartition("/")[2]
+        if editor and path.name == "editor.js":
+            return route.fulfill(body=editor, content_type="text/javascript; charset=utf-8")
         if path.suffix == ".js":
             code = path.read_text("utf-8")
             return route.fulfill(body=code, content_type="text/javascript; charset=utf-8")

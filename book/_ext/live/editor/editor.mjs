@@ -1,7 +1,7 @@
 // The code of a cell in CodeMirror; for the page it is a text field: `value`, `setRangeText`, `input`.
 import {
   CompletionContext, acceptCompletion, autocompletion, closeBrackets, closeBracketsKeymap,
-  completionStatus, moveCompletionSelection,
+  moveCompletionSelection,
 } from "@codemirror/autocomplete"; // prettier-ignore
 import { defaultKeymap, history, historyKeymap, indentWithTab } from "@codemirror/commands";
 import { globalCompletion, localCompletionSource, pythonLanguage } from "@codemirror/lang-python";
@@ -16,7 +16,7 @@ import { styleTags, tagHighlighter, tags as t } from "@lezer/highlight";
 const python = pythonLanguage.configure({
   props: [
     styleTags({
-      "FormatSpec FormatConversion FormatReplacement/{ FormatReplacement/}": t.string,
+      "FormatSpec FormatSpec/: FormatConversion FormatReplacement/{ FormatReplacement/}": t.string,
       '"*" "**" Ellipsis': t.operator,
       "ImportStatement/.": t.name,
       "Decorator/At Decorator/VariableName": t.meta,
@@ -40,7 +40,7 @@ const drawn = new Map(builtin.map(({ label, type }) => [label, type === "type" ?
 drawn.set("self", "bp");
 const builtins = EditorView.decorations.compute(["doc"], (state) => {
   const marks = [];
-  ensureSyntaxTree(state, state.doc.length)?.iterate({
+  ensureSyntaxTree(state, state.doc.length, 1000)?.iterate({
     enter({ name, from, to }) {
       const kind = name === "VariableName" && drawn.get(state.sliceDoc(from, to));
       if (kind) marks.push(Decoration.mark({ class: kind }).range(from, to));
@@ -73,7 +73,7 @@ const take = (view) =>
 
 // --- look: letters as on the page; what is loaded before the click knows nothing of this ---
 const look = EditorView.theme({
-  "&": { padding: 0 },
+  "&.live-code.highlight": { background: "var(--pst-color-surface)", padding: 0 },
   "&.cm-focused": { outline: "2px solid var(--pst-color-primary)", outlineOffset: "1px" },
   ".cm-scroller": { fontFamily: "inherit", lineHeight: "inherit" },
   ".cm-content": {
@@ -112,6 +112,12 @@ export function editor(attributes, page) {
   };
   const { class: name, ...own } = attributes;
   const extensions = [
+    // Tab leaves a cell that is passed through, and after Escape: nobody is trapped.
+    EditorView.domEventHandlers({
+      focus: (_, view) => view.setTabFocusMode(true),
+      click: (_, view) => view.setTabFocusMode(false),
+      keydown: ({ key }, view) => void (key === "Escape" && view.setTabFocusMode(true)),
+    }),
     keymap.of([{ key: "Tab", run: take }, ...closeBracketsKeymap, ...historyKeymap, indentWithTab]),
     keymap.of(defaultKeymap),
     history(),
@@ -126,16 +132,9 @@ export function editor(attributes, page) {
     look,
     EditorView.editorAttributes.of({ class: `${name} highlight` }),
     EditorView.contentAttributes.of({ ...own, class: "n" }),
-    EditorView.scrollMargins.of(() => ({ top: 144, bottom: 48 })), // header and handles
+    // what is typed is not behind the header and the handles
+    EditorView.scrollHandler.of((_, __, how) => void Object.assign(how, { xMargin: 14, yMargin: 144 })),
     EditorView.updateListener.of(written),
-    // Tab leaves a cell that is passed through, and after Escape: nobody is trapped.
-    EditorView.domEventHandlers({
-      focus: (_, view) => view.setTabFocusMode(true),
-      click: (_, view) => view.setTabFocusMode(false),
-      keydown(event, view) {
-        if (event.key === "Escape" && !completionStatus(view.state)) view.setTabFocusMode(true);
-      },
-    }),
   ];
   const view = new EditorView();
   Object.defineProperty(view.dom, "value", {
