@@ -42,6 +42,11 @@ def runs_through(tab, site: str, page: str) -> None:
     assert not tab.locator(".live-error, .live-warning, .live-note:has(a)").all_inner_texts()
 
 
+def code(field) -> str:
+    """What stands in the editor of a cell."""
+    return field.evaluate("(el) => el.closest('.live-code').value")
+
+
 BESIDE = """window.Worker = class {
   async postMessage(message) {
     const all = message.start ? [{ ready: true }] : await window.runs(message);
@@ -65,13 +70,15 @@ def set_up(
     field = '<div class="cell" data-live="{id}"><div class="cell_input"></div></div>'
     shown = "".join(field.format(**cell) for cell in given)
     scripts = "".join(f'<script src="{script}.js"></script>' for script in ("follow", "live"))
-    text = f"<style>{style}</style>{HEADER}<main><section>{shown}</section></main>"
+    head = f'<!doctype html><html lang="en"><title>x</title><style>{style}</style>'
+    text = f"{head}{HEADER}<main><h1>x</h1><section>{shown}</section></main>"
     text += f'<script type="application/json" id="live-page">{data}</script>{scripts}'
 
     def answer(route):
         path = packages.PAGE / route.request.url.rpartition("/")[2]
-        if editor and path.name == "editor.js":
-            return route.fulfill(body=editor, content_type="text/javascript; charset=utf-8")
+        if path.name == "editor.js":
+            status = 200 if editor else 404
+            return route.fulfill(status=status, body=editor, content_type="text/javascript")
         if path.suffix == ".js":
             code = path.read_text("utf-8")
             return route.fulfill(body=code, content_type="text/javascript; charset=utf-8")

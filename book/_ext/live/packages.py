@@ -139,7 +139,9 @@ def npm(folder: Path, *command: str) -> None:
     """Have npm do something in a folder."""
     program = shutil.which("npm")
     if program is None:
-        raise Refused("npm is missing: Pyodide's core and the editor come by it (https://nodejs.org)")
+        raise Refused(
+            "npm is missing: Pyodide's core and the editor come by it (https://nodejs.org)"
+        )
     command = [*command, "--loglevel=error", "--fetch-retries=1"]
     done = subprocess.run([program, *command], cwd=folder, capture_output=True, text=True)
     if done.returncode:

@@ -126,7 +126,9 @@ export function editor(attributes, page) {
     indentOnInput(),
     bracketMatching(),
     closeBrackets(),
-    autocompletion({ override: [offered(page)], icons: false, selectOnOpen: false }),
+    autocompletion({
+      override: [offered(page)], filterStrict: true, icons: false, selectOnOpen: false,
+    }), // prettier-ignore
     syntaxHighlighting(colours),
     builtins,
     look,

@@ -23,6 +23,7 @@ import sys
 import time
 import traceback
 import types
+from collections.abc import Collection
 from contextlib import nullcontext, redirect_stderr, redirect_stdout, suppress
 
 from names import Names, names
@@ -194,20 +195,17 @@ def parts(path: str, imported: bool, above) -> str:
     return json.dumps(sorted(name for name in names if not name.startswith("_")))
 
 
-def _of_module(path: str) -> list[str]:
-    """What it says that it has, or what it did not import from other packages itself."""
+def _of_module(path: str) -> Collection[str]:
+    """What it says that it has, or else what it did not import from elsewhere itself."""
     root = path.partition(".")[0]
     if root == "ddlib":
         with suppress(ImportError):
             importlib.import_module(path)
     there = vars(sys.modules.get(path, types.ModuleType(path)))
-    own = [
-        name
-        for name, value in there.items()
-        if not isinstance(value, types.ModuleType)
-        and str(getattr(value, "__module__", root)).partition(".")[0] == root
-    ]
-    return there.get("__all__", own)
+    homes = {name: str(getattr(value, "__module__", path)) for name, value in there.items()}
+    modules = {name for name, value in there.items() if isinstance(value, types.ModuleType)}
+    own = [n for n, home in homes.items() if home.partition(".")[0] == root and "._" not in home]
+    return there.get("__all__", set(own) - modules)
 
 
 def _of_object(path: str, above) -> list[str]:
