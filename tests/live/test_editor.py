@@ -15,9 +15,7 @@ from live.packages import Refused, editor
 from live_pages import code
 from names import names
 from open_cells import lesson
-from pygments import highlight
-from pygments.formatters import HtmlFormatter
-from pygments.lexers import get_lexer_by_name
+from sphinx.highlighting import PygmentsBridge
 from test_kept import take
 from test_opened import EVIL, OPENED
 
@@ -76,18 +74,18 @@ def reader(browser, run, script):
 
 
 def test_at_the_click_code_keeps_its_colours(reader):
-    style, lexer = HtmlFormatter(style="a11y-high-contrast-light"), get_lexer_by_name("ipython3")
+    book = PygmentsBridge("html", "a11y-high-contrast-light")  # as it draws pages
     every = [cell for page in WALK[:3] for cell in live_cells(lesson(page))]
     sources = [cell["source"] for cell in every if cell["kind"] != "check"]
     cells = [{"id": f"c{k}", "source": source} for k, source in enumerate(sources)]
     silent = live_pages.BESIDE.replace("await window.runs(message)", "[]")
-    tab, _ = reader(*cells, style=style.get_style_defs(".highlight"), worker=silent)
+    tab, _ = reader(*cells, style=book.get_stylesheet(), worker=silent)
     show = f"""(all) => all.map((html) => {{
       const el = document.body.appendChild(document.createElement("div"));
       el.innerHTML = html;
       return ({COLOURS})(el);
     }})"""
-    still = tab.evaluate(show, [highlight(source, lexer, style) for source in sources])
+    still = tab.evaluate(show, [book.highlight_block(source, "ipython3") for source in sources])
     for _ in range(100):  # a busy machine reads the end of long code a little later
         now = tab.evaluate(f"() => [...document.querySelectorAll('.cm-content')].map({COLOURS})")
         if now == still:
