@@ -1,4 +1,4 @@
-"""What a page loads: Pyodide's core from npm, wheels that its lock names, and this book's own.
+"""What a page loads: Pyodide's core from npm, wheels that its lock names, the editor, our own.
 
 Each foreign file is taken by its hash, from a mirror or from Pyodide's own public address, and kept
 for the next time.
@@ -15,6 +15,7 @@ import re
 import shutil
 import subprocess
 import tarfile
+import tempfile
 import urllib.error
 import urllib.request
 import zipfile
@@ -25,6 +26,7 @@ import ddlib
 
 PAGE = Path(__file__).with_name("page")  # what the page itself runs
 COMPILE = Path(__file__).with_name("compile.mjs")
+EDITOR = Path(__file__).with_name("editor")
 SITE = "/lib/python{}.{}/site-packages/"  # of the Python in a page, by its version
 VERSION = "314.0.3"
 TARBALL = "sK40My6m8tmBUYtYH9au9rXUeh9x0wfahtHdOlGmJxZDsKBGKtP6KznyFB2+u/klbQTdDionR0uaVd176zVQzQ=="
@@ -123,7 +125,8 @@ def core(store: Path) -> None:
     """Pyodide's core and its lock, out of npm's archive, which is kept and hashed each time."""
     archive = store / f"pyodide-{VERSION}.tgz"
     if not archive.is_file():
-        pack(store, archive)
+        store.mkdir(parents=True, exist_ok=True)
+        npm(store, "pack", f"pyodide@{VERSION}")
     if base64.b64encode(hashlib.sha512(archive.read_bytes()).digest()).decode() != TARBALL:
         archive.unlink()
         raise Refused(f"pyodide {VERSION} of npm is not the archive with SHA-512 {TARBALL}")
@@ -132,22 +135,56 @@ def core(store: Path) -> None:
             (store / name).write_bytes(packed.extractfile(f"package/{name}").read())
 
 
-def pack(store: Path, archive: Path) -> None:
-    """Get the archive by npm."""
-    npm = shutil.which("npm")
-    if npm is None:
-        raise Refused("npm is missing: Pyodide's core comes by it (https://nodejs.org)")
-    store.mkdir(parents=True, exist_ok=True)
-    command = [npm, "pack", "--loglevel=error", "--fetch-retries=1", f"pyodide@{VERSION}"]
-    done = subprocess.run(command, cwd=store, capture_output=True, text=True)
-    if done.returncode or not archive.is_file():
+def npm(folder: Path, *command: str) -> None:
+    """Have npm do something in a folder."""
+    program = shutil.which("npm")
+    if program is None:
+        raise Refused(
+            "npm is missing: Pyodide's core and the editor come by it (https://nodejs.org)"
+        )
+    command = [*command, "--loglevel=error", "--fetch-retries=1"]
+    done = subprocess.run([program, *command], cwd=folder, capture_output=True, text=True)
+    if done.returncode:
         reasons = [line.removeprefix("npm error ") for line in done.stderr.splitlines()]
         sentences = (line for line in reasons if " " in line and not line.startswith(CODES))
         raise Refused(
-            f"no core of Pyodide {VERSION}, which npm's registry has: npm pack pyodide@{VERSION} "
-            f"ended with “{next(sentences, 'no file')}”. Try again with a way to it (npm config "
-            f"get registry); wheels come from MIRROR= or {PUBLIC}."
+            f"npm {' '.join(command[:-2])} ended with “{next(sentences, 'no reason')}”. Try again "
+            f"with a way to npm's registry (npm config get registry); Pyodide's wheels come from "
+            f"MIRROR= or {PUBLIC}."
         )
+
+
+def editor(store: Path) -> Path:
+    """The editor as one script: CodeMirror by the hashes of its lock, bundled once and kept."""
+    sources = [EDITOR / name for name in ("editor.mjs", "package.json", "package-lock.json")]
+    script = store / f"editor-{sha256(b''.join(path.read_bytes() for path in sources))}.js"
+    if script.is_file():
+        return script
+    print("==> Bundling the editor (CodeMirror)", flush=True)
+    store.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=store) as name:
+        folder = Path(name)
+        for path in sources:
+            shutil.copy(path, folder)
+        npm(folder, "ci", "--ignore-scripts", "--no-audit", "--no-fund")
+        bundler = ["node", "node_modules/esbuild-wasm/bin/esbuild", "editor.mjs"]
+        options = ["--bundle", "--minify", "--format=esm", "--log-level=error"]
+        done = subprocess.run(
+            [*bundler, *options], cwd=folder, stdin=subprocess.DEVNULL, capture_output=True
+        )
+        if done.returncode:
+            raise Refused(f"the editor could not be bundled: {done.stderr.decode()[-500:]}")
+        bundler = folder / "node_modules" / "esbuild-wasm"
+        licences = {
+            path.read_bytes()
+            for path in folder.rglob("LICENSE*")
+            if not path.is_relative_to(bundler)
+        }
+        texts = b"\n".join(sorted(licences))
+        part = folder / "part"
+        part.write_bytes(b"/*\n" + texts + b"*/\n" + done.stdout)
+        part.replace(script)
+    return script
 
 
 def zipped(files: dict[str, bytes]) -> bytes:
@@ -196,11 +233,14 @@ def wheel(name: str, version: str, files: dict, depends: list, imports: str, out
 
 
 def taken(mirror: str, store: Path) -> dict:
-    """The lock, with those packages alone that a page may need; their files lie in the store."""
+    """The lock, with those packages alone that a page may need; their files lie in the store,
+    and the editor.
+    """
     core(store)
     lock = json.loads((store / LOCK).read_text(encoding="utf-8"))
     packages = {name: lock["packages"][name] for name in with_dependencies(lock["packages"])}
     take(list(packages.values()), mirror, store)
+    editor(store)
     return {**lock, "packages": packages}
 
 
@@ -257,6 +297,7 @@ def write_packages(root: Path, mirror: str, store: Path, out: Path) -> tuple[lis
     for entry in packages.values():
         entry["sha256"] = sha256((pyodide / entry["file_name"]).read_bytes())
     (pyodide / LOCK).write_text(json.dumps(lock), encoding="utf-8")
+    shutil.copyfile(editor(store), out / "editor.js")
     shutil.copytree(PAGE, out, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
     at_first = [
         pyodide / name for name in (*CORE, LOCK, *(packages[n]["file_name"] for n in FIRST))

@@ -293,6 +293,24 @@
     remember();
   }
 
+  // What the editor offers: names of the cells above, and what objects of these have, if Python is
+  // there and has nothing else to do.
+  let editor, answered;
+  const namesFor = ({ place }) => ({
+    names: () =>
+      cells.slice(0, place).flatMap(({ name, names: { writes = [], perhaps = [] } }) =>
+        [...writes, ...perhaps].map((each) => [each, name]),
+      ),
+    parts(path, imported) {
+      answered?.([]);
+      answered = undefined;
+      if (!ready || running) return [];
+      const above = cells.slice(0, place + 1).filter((c) => c.turn).map((c) => c.name);
+      worker.postMessage({ path, imported, above });
+      return new Promise((resolve) => (answered = resolve));
+    },
+  });
+
   function open(cell, number) {
     const input = cell.el.querySelector(".cell_input");
     cell.name = `cell ${number + 1}`;
@@ -340,34 +358,22 @@
       cell.output.before(tools);
       return;
     }
-    cell.area = make("textarea", {
+    const about = {
       class: "live-code",
-      spellcheck: "false",
-      autocapitalize: "off",
-      autocomplete: "off",
       "aria-label": `Code of ${cell.name}`,
       "aria-describedby": "live-keys",
-    });
+    };
+    const plain = { spellcheck: "false", autocapitalize: "off", autocomplete: "off" };
+    cell.area = editor?.(about, namesFor(cell)) ?? make("textarea", { ...about, ...plain });
     cell.area.value = cell.written = keptText(cell);
-    // Tab indents once something was typed here; it leaves a cell that is passed through, and
-    // after Escape: nobody is trapped.
-    let indents = false;
-    cell.area.addEventListener("focus", () => (indents = false));
-    cell.area.addEventListener("pointerdown", () => setTimeout(() => (indents = true)));
-    cell.area.addEventListener("input", () => {
-      indents = true;
-      changed(cell);
-    });
-    cell.area.addEventListener("keydown", (event) => {
-      if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) {
-        event.preventDefault();
-        run();
-      } else if (event.key === "Escape") indents = false;
-      else if (event.key === "Tab" && indents && !event.shiftKey && !event.ctrlKey) {
-        event.preventDefault();
-        document.execCommand("insertText", false, "    "); // so that it can be undone
-      }
-    });
+    cell.area.addEventListener("input", () => changed(cell));
+    const keys = (event) => {
+      if (event.key !== "Enter" || !(event.ctrlKey || event.metaKey || event.shiftKey)) return;
+      event.preventDefault();
+      event.stopPropagation();
+      run();
+    };
+    cell.area.addEventListener("keydown", keys, { capture: true });
     cell.el.classList.remove("is-asked-below"); // the page's own field is no longer all there is
     input.hidden = true;
     input.after(cell.area, tools);
@@ -793,6 +799,7 @@
   function heard(message) {
     if (foreign && (message.form || message.widget)) return;
     if (message.form) inBoth(message);
+    else if (message.parts) answered?.(message.parts.filter(isText));
     else if (message.picked !== undefined) pick(message.picked);
     else if (message.widget) withHost(() => host.heard(message.widget, message.buffers));
     else if (message.bytes) {
@@ -1101,10 +1108,13 @@
     }
     say("starting Python");
     if (isOn() || (await isolate())) return;
+    document.documentElement.dataset.live = "running";
+    editor = await import(new URL("editor.js", home)).then((module) => module.editor, () => undefined);
     cells.forEach(open);
     tally();
-    document.documentElement.dataset.live = "running";
-    const keys = "Ctrl+Enter runs a cell. Tab indents after you typed; Escape, then Tab, leaves the code.";
+    const keys =
+      "Ctrl+Enter or Shift+Enter runs a cell." +
+      (editor ? " Tab indents after you typed, or takes a name; Escape, then Tab, leaves the code." : "");
     const rest = make("div", { class: "live-rest" }, reacts, reset, make("p", { id: "live-keys" }, keys));
     (cells.find((c) => c.handles) ?? cells[0]).el.before(rest);
     mark();

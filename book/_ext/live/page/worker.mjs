@@ -111,9 +111,13 @@ let last = Promise.resolve();
 self.onmessage = ({ data }) => (last = last.then(() => act(data)));
 
 async function act(message) {
-  const { start: data, interrupts, run, source, above, how, widget, buffers, forms } = message;
+  const { start: data, interrupts, run, source, above, how, widget, buffers, forms, path } = message;
   try {
     if (forms) return kernel.forms((cell, number, text) => tell({ form: cell, number, text }));
+    if (path) {
+      const parts = kernel.parts(path, message.imported, python.toPy(above));
+      return tell({ parts: JSON.parse(parts) });
+    }
     if (widget) {
       const names = JSON.parse(kernel.heard(widget, buffers));
       return names.length && tell({ kind: "moved", names });
