@@ -16,6 +16,7 @@ import linecache
 import marshal
 import os
 import pickle
+import random
 import re
 import sys
 import time
@@ -313,7 +314,8 @@ class OneThread:
 
 
 def start() -> None:
-    """Take the place of `tqdm` and of threads."""
+    """Take the place of `tqdm` and of threads; the memory that Python began with was made once."""
+    random.seed()
     concurrent.futures.ThreadPoolExecutor = OneThread
     for name in ("tqdm", "tqdm.auto"):
         sys.modules[name] = types.ModuleType(name)

@@ -744,7 +744,7 @@
     };
     interrupts = isolated ? new Uint8Array(new SharedArrayBuffer(1)) : undefined;
     const files = data.map((name) => `data/${name}`);
-    worker.postMessage({ start: files, interrupts, picked: picked() });
+    worker.postMessage({ start: files, ahead, interrupts, picked: picked() });
   }
 
   function advance(bytes) {
@@ -973,13 +973,7 @@
       cell.asked = true;
       waiting.add(cell);
     }
-    if (!worker) {
-      boot();
-      // While Python starts, all packages come, in the order in which cells import them: the browser
-      // keeps them for the worker, which would ask for each when a cell needs it.
-      for (const name of ahead.splice(0))
-        fetch(new URL(`pyodide/${name}`, home), { priority: "low" }).then((a) => a.blob(), () => {});
-    }
+    if (!worker) boot();
     face();
     next();
   }
