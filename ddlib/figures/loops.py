@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import permutations
 
 import control
 import numpy as np
@@ -45,7 +46,7 @@ def poles_and_bode(
         loci, *pair = figure.subplot_mosaic(places).values()
         for name, L in loops.items():
             look = looks(loops)[name].line
-            paths = control.root_locus_map(L, gains=np.geomspace(1e-3, 4, 3000)).loci
+            paths = _paths(L, np.geomspace(1e-3, 4, 3000))
             loci.plot(paths.real, paths.imag, **look)
             now = control.feedback(L).poles()
             loci.plot(now.real, now.imag, "o", color=look["color"])
@@ -59,3 +60,24 @@ def poles_and_bode(
         pair[0].legend(pair[0].lines[:: len(pair[0].lines) // len(loops)], list(loops))
 
     return illustrate(draw, alt, 7.0, 2.9, narrow_height=7.0)
+
+
+def _paths(L, gains: np.ndarray) -> np.ndarray:
+    """Poles of the closed loop, a row for each gain and a column for each pole on its way.
+
+    As `control.root_locus_map`, which takes twenty times as long: it asks for one gain at a time.
+    """
+    (numerator,), (denominator,) = (rows[0] for rows in control.tfdata(L))
+    order = len(denominator) - 1
+    sums = denominator + np.outer(gains, np.pad(numerator, (len(denominator) - len(numerator), 0)))
+    companions = np.zeros((len(gains), order, order))
+    companions[:, range(1, order), range(order - 1)] = 1
+    companions[:, 0] = -sums[:, 1:] / sums[:, :1]
+    poles = np.linalg.eigvals(companions).astype(complex)
+    ways = np.array([*permutations(range(order))])
+    steps = np.abs(poles[1:, ways] - poles[:-1, None]).sum(-1).argmin(1)
+    way, found = np.arange(order), [poles[0]]
+    for after, step in zip(poles[1:], steps):
+        way = ways[step][way]
+        found.append(after[way])
+    return np.array(found)
