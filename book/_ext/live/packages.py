@@ -50,6 +50,7 @@ PURE = {  # from this environment: what each depends on, and what is imported of
     "traitlets": ([], "traitlets"),
 }
 FIRST = ("numpy", "ddlib", "lazy-loader")  # before the first cell
+LATER = {"fonttools"}  # what Matplotlib takes for a PDF alone: it comes if a cell saves one
 ROOMS = "workshop"  # of the book, and Part IV's
 WIDGETS = "ddlib/widgets"  # a wheel of their own: few cells show one
 STILL = f"{WIDGETS}/still.py"  # draws what a page does not show
@@ -271,6 +272,7 @@ def write_packages(root: Path, mirror: str, store: Path, out: Path) -> tuple[lis
     names = compile_all(pyodide, store)
     for entry in packages.values():
         entry["file_name"] = names[entry["file_name"]]
+        entry["depends"] = [name for name in entry["depends"] if name not in LATER]
     (pyodide / LOCK).write_text(json.dumps(lock), encoding="utf-8")
     files = {name: pyodide / entry["file_name"] for name, entry in packages.items()}
     imported = with_dependencies(packages, (*FIRST, "matplotlib"))

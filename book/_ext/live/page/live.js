@@ -108,7 +108,7 @@
     status.textContent = text;
     status.classList.toggle("live-long", text.length > 40);
   };
-  const calm = (text) => [text, blocked && "this browser keeps no changes"].filter(Boolean).join(": ");
+  const calm = (text) => [text, blocked && "your changes last until you leave"].filter(Boolean).join(": ");
   // What the button does follows what there is to do.
   let act = () => start();
   let stale = 0; // cells that may be out of date
@@ -391,14 +391,11 @@
   function changed(cell) {
     fit(cell);
     remember();
-    if (blocked) {
-      heardOf.textContent = keptNothing;
-      say(calm(""));
-    }
+    if (blocked) say((heardOf.textContent = keptNothing));
     mark();
     clearTimeout(timer);
     if (react.checked) timer = setTimeout(followUp, 500);
-    else if (ready && !running) say(upToDate());
+    else if (ready && !running && !blocked) say(upToDate());
   }
 
   // --- handles: the numbers of *Change this* ---
