@@ -39,7 +39,7 @@ def poles_and_bode(
         for name, system in systems.items():
             instance(f"{kind}[{name!r}]", system, control.lti.LTI)
     w = decay * np.geomspace(1 / 8, 25, 400)  # rad/s
-    gains = np.geomspace(1e-3, 4, 3000)
+    gains = np.geomspace(1e-3, 4, 1000)
     paths = {name: control.root_locus_map(L, gains=gains).loci for name, L in loops.items()}
 
     def draw(figure: Figure):

@@ -178,11 +178,20 @@ def test_where_nothing_more_is_kept_it_is_told_and_a_file_has_all(reader):
     tab.evaluate(FULL)
     field(tab, 1).fill("b = 20")
     assert "keeps nothing" in tab.locator(".live-kept").text_content()
-    assert "keeps no changes" in tab.locator(".live-status").text_content()  # beside the button
+    beside = tab.locator(".live-status")  # of the button
+    assert "until you leave the page; “Save as a file” keeps" in beside.text_content()
     field(tab, 0).fill("a = 11")
     found = saved(tab)["pages"]["a.html"]["changes"]
     assert {name: code for name, (_, code) in found.items()} == {"one": "a = 11", "two": "b = 20"}
     assert "keeps nothing" in take(tab, file(b={"changes": {"one": ["a = 1", "a = 7"]}}))[1]
+
+
+def test_where_storage_is_blocked_it_is_said_beside_the_button_before_it_is_pressed(browser):
+    tab = browser.new_page()
+    refuse = "Object.defineProperty(window, 'localStorage', {get() { throw new Error('blocked') }})"
+    tab.add_init_script(refuse)
+    tab.goto(live_pages.set_up(tab, [ONE]))
+    assert tab.locator(".live-status").text_content() == "your changes last until you leave"
 
 
 def test_another_book_of_the_server_is_left_alone(reader):

@@ -27,11 +27,14 @@ import ddlib
 PAGE = Path(__file__).with_name("page")  # what the page itself runs
 COMPILE = Path(__file__).with_name("compile.mjs")
 EDITOR = Path(__file__).with_name("editor")
+START = Path(__file__).with_name("start.mjs")
 SITE = "/lib/python{}.{}/site-packages/"  # of the Python in a page, by its version
+BOOK = "/book"  # where cells run, and the rooms of the book are
 VERSION = "314.0.3"
 TARBALL = "sK40My6m8tmBUYtYH9au9rXUeh9x0wfahtHdOlGmJxZDsKBGKtP6KznyFB2+u/klbQTdDionR0uaVd176zVQzQ=="
 CORE = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip")
 LOCK = "pyodide-lock.json"
+STARTED = "started.gz"  # Python's memory after its start
 CODES = ("code ", "errno ", "syscall ")  # what npm says before it says why
 PUBLIC = f"https://cdn.jsdelivr.net/pyodide/v{VERSION}/full"  # where Pyodide keeps its wheels
 WHEELS = (
@@ -49,6 +52,8 @@ PURE = {  # from this environment: what each depends on, and what is imported of
     "traitlets": ([], "traitlets"),
 }
 FIRST = ("numpy", "ddlib", "lazy-loader")  # before the first cell
+LATER = {"fonttools"}  # what Matplotlib takes for a PDF alone: it comes if a cell saves one
+ROOMS = "workshop"  # of the book, and Part IV's
 WIDGETS = "ddlib/widgets"  # a wheel of their own: few cells show one
 STILL = f"{WIDGETS}/still.py"  # draws what a page does not show
 
@@ -213,7 +218,7 @@ def installed(name: str) -> tuple[str, dict[str, bytes]]:
     return package.version, {path.as_posix(): path.locate().read_bytes() for path in modules}
 
 
-def wheel(name: str, version: str, files: dict, depends: list, imports: str, out: Path) -> dict:
+def wheel(name: str, version: str, files: dict, depends: list, imports: list, out: Path) -> dict:
     """Write a wheel; returns its entry for the lock."""
     plain = name.replace("-", "_")
     info = f"{plain}-{version}.dist-info"
@@ -222,13 +227,12 @@ def wheel(name: str, version: str, files: dict, depends: list, imports: str, out
         f"{info}/WHEEL": "Wheel-Version: 1.0\nRoot-Is-Purelib: true\nTag: py3-none-any\n",
         f"{info}/RECORD": "",
     }
-    content = zipped({**files, **{path: text.encode() for path, text in about.items()}})
     file_name = f"{plain}-{version}-py3-none-any.whl"
-    (out / file_name).write_bytes(content)
+    content = {**files, **{path: text.encode() for path, text in about.items()}}
+    (out / file_name).write_bytes(zipped(content))
     return {
         "name": name, "version": version, "file_name": file_name, "install_dir": "site",
-        "sha256": sha256(content), "package_type": "package", "imports": [imports],
-        "depends": depends, "unvendored_tests": False,
+        "package_type": "package", "imports": imports, "depends": depends,
     }  # fmt: skip
 
 
@@ -244,30 +248,41 @@ def taken(mirror: str, store: Path) -> dict:
     return {**lock, "packages": packages}
 
 
-def compile_all(folder: Path, store: Path) -> None:
-    """Put compiled code in place of sources in all wheels and zips of a folder; it is kept."""
+def node(*words) -> None:
+    """Run Pyodide's core where pages are built."""
+    program = shutil.which("node")
+    if program is None:
+        raise Refused("node is missing: it compiles packages (https://nodejs.org)")
+    done = subprocess.run([program, *words], capture_output=True, text=True)
+    if done.returncode:
+        raise Refused(f"packages could not be compiled: {done.stderr[-500:]}")
+
+
+def compile_all(folder: Path, store: Path) -> dict[str, str]:
+    """Packs in place of all wheels of a folder, with compiled code in place of sources.
+
+    They are kept. Returns their names, by those of the wheels: these follow from what is in them,
+    so that no browser has yesterday's.
+    """
     kept = store / "compiled"
     kept.mkdir(parents=True, exist_ok=True)
-    todo, found = [], {}
-    for path in sorted((*folder.rglob("*.whl"), folder / "workshop.zip")):
-        found[path] = kept / f"{sha256(path.read_bytes() + COMPILE.read_bytes())}.zip"
+    todo, found, names = [], {}, {}
+    for path in sorted(folder.glob("*.whl")):
+        found[path] = kept / sha256(path.read_bytes() + COMPILE.read_bytes())
         if not found[path].is_file():
-            root = SITE if path.suffix == ".whl" else "/book/"
+            root = f"{BOOK}/" if path.name.startswith(f"{ROOMS}-") else SITE
             todo += [root, path, found[path].with_suffix(".part")]
     if todo:
-        node = shutil.which("node")
-        if node is None:
-            raise Refused("node is missing: it compiles packages (https://nodejs.org)")
         print(f"==> Compiling {len(todo) // 3} packages", flush=True)
-        done = subprocess.run(
-            [node, COMPILE, store.resolve(), *todo], capture_output=True, text=True
-        )
-        if done.returncode:
-            raise Refused(f"packages could not be compiled: {done.stderr[-500:]}")
+        node(COMPILE, store.resolve(), *todo)
         for part in todo[2::3]:
-            part.replace(part.with_suffix(".zip"))
-    for path, compiled in found.items():
-        shutil.copyfile(compiled, path)
+            part.replace(part.with_suffix(""))
+    for path, pack in found.items():
+        digest = sha256(pack.read_bytes())[:12]
+        names[path.name] = f"{path.name.partition('-')[0]}-{digest}.pack"
+        shutil.copyfile(pack, folder / names[path.name])
+        path.unlink()
+    return names
 
 
 def write_packages(root: Path, mirror: str, store: Path, out: Path) -> tuple[list[int], dict]:
@@ -281,27 +296,30 @@ def write_packages(root: Path, mirror: str, store: Path, out: Path) -> tuple[lis
     for name in (*CORE, *(entry["file_name"] for entry in packages.values())):
         shutil.copyfile(store / name, pyodide / name)
     for name, (depends, imports) in PURE.items():
-        packages[name] = wheel(name, *installed(name), depends, imports, pyodide)
+        packages[name] = wheel(name, *installed(name), depends, [imports], pyodide)
     ours = sources(root / "ddlib", root)
     widgets = {path: ours.pop(path) for path in sorted(ours) if path.startswith(f"{WIDGETS}/")}
     widgets[STILL] = (PAGE / "instead" / "still.py").read_bytes()
     version, first = ddlib.__version__, [name for name in FIRST if name != "ddlib"]
-    for name, files, depends, imports in (
-        ("ddlib", ours, first, "ddlib"),
-        ("ddlib-widgets", widgets, ["traitlets"], WIDGETS.replace("/", ".")),
+    rooms = [sources(root / "book" / name, root / "book") for name in (ROOMS, "beyond")]
+    for name, number, files, depends, imports in (
+        ("ddlib", version, ours, first, ["ddlib"]),
+        ("ddlib-widgets", version, widgets, ["traitlets"], [WIDGETS.replace("/", ".")]),
+        (ROOMS, "0", rooms[0] | rooms[1], [], [ROOMS, "beyond"]),
     ):
-        packages[name] = wheel(name, version, files, depends, imports, pyodide)
-    rooms = [sources(root / "book" / name, root / "book") for name in ("workshop", "beyond")]
-    (out / "workshop.zip").write_bytes(zipped(rooms[0] | rooms[1]))
-    compile_all(out, store)
+        packages[name] = wheel(name, number, files, depends, imports, pyodide)
+    packages[ROOMS]["install_dir"] = BOOK
+    names = compile_all(pyodide, store)
     for entry in packages.values():
-        entry["sha256"] = sha256((pyodide / entry["file_name"]).read_bytes())
+        entry["file_name"] = names[entry["file_name"]]
+        entry["depends"] = [name for name in entry["depends"] if name not in LATER]
     (pyodide / LOCK).write_text(json.dumps(lock), encoding="utf-8")
     shutil.copyfile(editor(store), out / "editor.js")
+    files = {name: pyodide / entry["file_name"] for name, entry in packages.items()}
+    imported = with_dependencies(packages, (*FIRST, "matplotlib"))
+    node(START, pyodide.resolve(), pyodide / STARTED, *(files[name] for name in imported))
     shutil.copytree(PAGE, out, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
-    at_first = [
-        pyodide / name for name in (*CORE, LOCK, *(packages[n]["file_name"] for n in FIRST))
-    ]
+    at_first = [*(pyodide / name for name in (*CORE, LOCK, STARTED)), *map(files.get, FIRST)]
     every = [path for path in out.rglob("*") if path.is_file()]
     megabytes = [
         math.ceil(sum(path.stat().st_size for path in files) / 1e6) for files in (at_first, every)

@@ -18,6 +18,7 @@ import linecache
 import marshal
 import os
 import pickle
+import random
 import re
 import sys
 import time
@@ -357,7 +358,8 @@ class OneThread:
 
 
 def start() -> None:
-    """Take the place of `tqdm` and of threads."""
+    """Take the place of `tqdm` and of threads; the memory that Python began with was made once."""
+    random.seed()
     concurrent.futures.ThreadPoolExecutor = OneThread
     for name in ("tqdm", "tqdm.auto"):
         sys.modules[name] = types.ModuleType(name)

@@ -108,7 +108,7 @@
     status.textContent = text;
     status.classList.toggle("live-long", text.length > 40);
   };
-  const calm = (text) => [text, blocked && "this browser keeps no changes"].filter(Boolean).join(": ");
+  const calm = (text) => [text, blocked && "your changes last until you leave"].filter(Boolean).join(": ");
   // What the button does follows what there is to do.
   let act = () => start();
   let stale = 0; // cells that may be out of date
@@ -398,14 +398,11 @@
   function changed(cell) {
     fit(cell);
     remember();
-    if (blocked) {
-      heardOf.textContent = keptNothing;
-      say(calm(""));
-    }
+    if (blocked) say((heardOf.textContent = keptNothing));
     mark();
     clearTimeout(timer);
     if (react.checked) timer = setTimeout(followUp, 500);
-    else if (ready && !running) say(upToDate());
+    else if (ready && !running && !blocked) say(upToDate());
   }
 
   // --- handles: the numbers of *Change this* ---
@@ -775,7 +772,7 @@
     };
     interrupts = isolated ? new Uint8Array(new SharedArrayBuffer(1)) : undefined;
     const files = data.map((name) => `data/${name}`);
-    worker.postMessage({ start: files, interrupts, picked: picked() });
+    worker.postMessage({ start: files, ahead, interrupts, picked: picked() });
   }
 
   function advance(bytes) {
@@ -1006,13 +1003,7 @@
       cell.asked = true;
       waiting.add(cell);
     }
-    if (!worker) {
-      boot();
-      // While Python starts, all packages come, in the order in which cells import them: the browser
-      // keeps them for the worker, which would ask for each when a cell needs it.
-      for (const name of ahead.splice(0))
-        fetch(new URL(`pyodide/${name}`, home), { priority: "low" }).then((a) => a.blob(), () => {});
-    }
+    if (!worker) boot();
     face();
     next();
   }
