@@ -262,9 +262,8 @@ def notebook(path: Path, varied: bool = False):
             cells.append(_cell("code", f"{cell.source}\n{answer}", cell.id, answer=True))
             count += 1
         elif below and is_check(cell):
-            source = JUDGE.sub("", cell.source).strip("\n")
             test = _between("HIDDEN TESTS", "from exercises import verdict\n\nassert verdict.right")
-            source = f"from judge import check\n\n{source}\n{test}"
+            source = f"{JUDGE.sub('from judge import check', cell.source)}\n{test}"
             cells.append(_cell("code", source, f"check-{count}", points=POINTS["check"]))
             said = _between("SOLUTION", _quoted(words, explained[count - 1]))
             text = f"{HOW.format(count)}\n\n{said}"

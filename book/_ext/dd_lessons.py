@@ -8,7 +8,8 @@
 - ``{exercises} kind`` lists exercises, ``{exercise-minutes}`` says by which rule their minutes are
   estimated, ``{objectives}`` lists what readers can do after each lesson.
 - ``{lecture} 1`` is a lecture of `book/lectures.yml`: a table of what to show and ask, and the
-  answers in a fold. ``{lessons-at-a-glance}`` is a table of the walk.
+  answers in a fold. ``{lessons-at-a-glance}`` is a table of the walk, ``{answers-that-differ}`` one
+  of how many different answers variants have to each exercise.
 """
 
 from __future__ import annotations
@@ -296,6 +297,21 @@ class AtAGlance(LessonDirective):
         return [table(rows)]
 
 
+class Differ(LessonDirective):
+    """``{answers-that-differ}``."""
+
+    def run(self):
+        self.depends_on(self.root / "book" / "variants.yml", *chapters(self.root))
+        rows = [("lesson", "exercises (different answers of the variants)")]
+        for name, counts in entries(self.root, "variants")["differ"].items():
+            of, links = lesson(self.root, f"book/{name}"), nodes.inline()
+            for exercise, count in zip(of.exercises, counts.split(", "), strict=True):
+                links += [nodes.Text(", ")] if len(links) else []
+                links += [numbered(exercise, of), nodes.Text(f" ({count})")]
+            rows.append((title_of(self.env, name), links))
+        return [table(rows)]
+
+
 def setup(app):
     for name, role in (
         ("section", Section), ("exercise", Exercises), ("open", Open), ("reading", Reading)
@@ -303,7 +319,7 @@ def setup(app):
         app.add_role(name, role())
     for name, directive in (
         ("exercises", Listed), ("exercise-minutes", Minutes), ("objectives", Objectives),
-        ("lecture", Lecture), ("lessons-at-a-glance", AtAGlance),
+        ("lecture", Lecture), ("lessons-at-a-glance", AtAGlance), ("answers-that-differ", Differ),
     ):  # fmt: skip
         app.add_directive(name, directive)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

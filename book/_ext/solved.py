@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import ast
 import io
-import re
 from collections.abc import Mapping
 from contextlib import chdir, redirect_stdout
 from dataclasses import dataclass
@@ -185,7 +184,6 @@ def solve(
     notebook = changed(nbformat.read(path, as_version=4), settings)
     every = exercises(notebook)
     found = every[only - 1 : only] if only else every
-    imports = re.findall(r"(?m)^from .* import check$", "\n".join(one.check for one in every))
     opened = [c.source for c in notebook.cells if is_open(c) and not is_starter(c)]
     statements = [node for source in opened for node in ast.parse(source).body]
     if not whole:
@@ -193,7 +191,6 @@ def solve(
         statements = needed(statements, _Uses(own).reads)
     space, solved = {"__name__": "__main__"}, []
     with chdir(DATA), redirect_stdout(io.StringIO()):
-        exec("\n".join(imports), space)  # the first check's, which the others may use
         exec(compile(ast.Module(statements, []), str(path), "exec"), space)
         for exercise in found:
             exec(exercise.starter, space)
@@ -209,6 +206,18 @@ def solve(
             solved.append(Solved(exercise.solution.strip(), answer, asked[0], said))
     plt.close("all")
     return solved
+
+
+def differ(solutions: list[list[Solved]]) -> str:
+    """How many answers to each exercise are neither the first's nor each other's: "10, 0"."""
+    counts = []
+    for first, *others in zip(*solutions):
+        kept = [first]
+        for one in others:
+            known = any(one.takes(k.answer) or k.takes(one.answer) for k in kept)
+            kept += [] if known else [one]
+        counts.append(str(len(kept) - 1))
+    return ", ".join(counts)
 
 
 def apart(first: list[Solved], second: list[Solved]) -> bool:

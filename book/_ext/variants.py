@@ -6,6 +6,7 @@
 
 A variant is kept if the book's solutions are right with its settings, all open cells run, and its
 answer to some exercise is right in no other variant and not in the book, where a solution stands.
+`differ` counts for each exercise the answers that are neither the book's nor each other's.
 """
 
 from __future__ import annotations
@@ -16,14 +17,14 @@ import random
 import sys
 
 import yaml
-from lessons import lessons
-from solved import FILE, ROOT, Solved, apart, solve, variants
+from lessons import entries, lessons
+from solved import FILE, ROOT, Solved, apart, differ, solve, variants
 
 MANY = 10
 HEAD = """\
 # Variants of assignments: settings for the cell *Change this* (or for a cell with a question), by
 # lesson, found and verified by book/_ext/variants.py. Variant 7 is the seventh. A lesson without
-# variants says why.
+# variants says why. `differ` has for each exercise how many different answers the variants have.
 
 """
 
@@ -44,10 +45,19 @@ ARM = 'Arm.from_links("mine", Link(14.0, 0.5, 0.22, 0.4), Link({}, 0.4, {}, {}))
 ARMS = [
     ARM.format(m, c, i) for m in (6.0, 10.0, 14.0) for c in (0.06, 0.1, 0.15) for i in (0.2, 0.5)
 ]
+
+
+def _extents(seed: int) -> str:
+    draw = random.Random(seed)
+    return str([[draw.randint(0, 45), draw.randint(0, 45)] for _ in range(6)])
+
+
 CHOICES = {
     "dynamics": {"upper_arm": UPPER, "forearm": FOREARM},
     "feedback": {"viscous": FRICTION, "period": ["0.0005", "0.001", "0.00125", "0.002"]},
     "feedforward": {"viscous": FRICTION, "seconds": ["2.5", "3.0", "3.5"], "forearm": FOREARM},
+    "trajectories-and-recording": {"extents": [_extents(seed) for seed in range(40)]},
+    "backpropagation": {"seed": [str(n) for n in range(1, 40)]},
     "window-networks": {"window": ODD, "hidden": [str(n) for n in range(5, 15)]},
     "hinton-diagrams": {"window": ODD, "hidden_units": [str(n) for n in range(5, 17)]},
     "convolution-filters": {"window": ODD},
@@ -115,6 +125,8 @@ def mistakes(lesson: str, whole: bool = True) -> list[str]:
         solutions.append(solve(path(lesson), settings))
         said = told(solutions[-1]) or ([failure(lesson, settings)] if whole else [])
         wrong += [f"{lesson}, variant {number}: {mistake}" for mistake in said if mistake]
+    if (now := differ(solutions)) != (said := entries(ROOT, "variants")["differ"].get(lesson)):
+        wrong.append(f"{lesson}: {now} answers differ, not {said}")
     for first, second in itertools.combinations(range(len(solutions)), 2):
         if not apart(solutions[first], solutions[second]):
             wrong.append(f"{lesson}: variants {first} and {second} have the same answers")
@@ -132,9 +144,12 @@ def main() -> int:
     for lesson in asked.lessons or [*CHOICES]:
         print(f"==> {lesson}", flush=True)
         if asked.find:
-            kept[lesson] = found(lesson, asked.only)
+            own = found(lesson, asked.only)
+            kept["differ"][lesson] = differ([solve(path(lesson), s) for s in ({}, *own)])
+            kept[lesson] = own
             ordered = [each.name for each in lessons(ROOT)]
-            kept = {name: kept[name] for name in ordered if name in kept}
+            counts = {name: kept["differ"][name] for name in ordered if name in kept["differ"]}
+            kept = {"differ": counts} | {name: kept[name] for name in ordered if name in kept}
             text = yaml.safe_dump(kept, sort_keys=False, width=200, allow_unicode=True)
             FILE.write_text(HEAD + text, encoding="utf-8")
         else:

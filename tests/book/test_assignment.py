@@ -21,6 +21,7 @@ import handed_in
 import lessons
 import solved
 import variants
+from lessons import entries
 
 LESSONS = [*assignment.lessons()]
 QUICK = ("dynamics", "window-size")
@@ -224,6 +225,13 @@ def named(text):
 
 LECTURES = TEACHING.partition("## A class on one lesson")[0] + QUICK_ONES.sub("", LABS)
 HOMEWORK = sorted({*named(LECTURES)})
+
+
+def test_homework_has_answers_that_differ():
+    """By the table on the page, five of ten or more, in each lesson of the walk that is taught."""
+    counts = {name: said.split(", ") for name, said in entries(ROOT, "variants")["differ"].items()}
+    assert {*counts} == {*VARIED}
+    assert min(int(counts[name][number - 1]) for name, number in HOMEWORK) >= 5
 
 
 @pytest.mark.slow

@@ -193,7 +193,7 @@ def figures_are_made_in_the_open(notebook) -> list:
 def exercises_wait_for_an_answer(notebook) -> list:
     """A question, an empty starter, a check, a folded solution; a lesson may have no exercises.
 
-    What a question shows stands open above its starter.
+    What a question shows stands open above its starter; each check imports what judges.
     """
     cells, shown = exercises(notebook), visible(notebook)
     kinds = [
@@ -203,6 +203,7 @@ def exercises_wait_for_an_answer(notebook) -> list:
     ]
     asked = len(re.findall(r"^\*\*\d+\. ", prose(notebook).partition(f"## {OWN}")[2], re.M))
     wrong = [] if kinds == ["starter", "check"] * asked else [kinds]
+    wrong += [c.id for c in cells if is_check(c) and " import check\n" not in c.source]
     return wrong + [c.id for c in cells if c.cell_type == "markdown" and open_answer(c.source)]
 
 

@@ -425,6 +425,7 @@ def _exercise(number: int, *asked) -> Exercise:
         slips = [
             (0.2, "that is the share that is lost."),
             (0.25, "that is the penalty over the variance."),
+            (0.75, "the penalty is a quarter of the variance, not of their sum."),
         ]
         return Exercise(
             "number", 0.8, "small variances lose most.", slips, "Set the slope in w' to zero."

@@ -210,6 +210,19 @@ def _exercise(number: int, *given) -> Exercise:
         ]
         reason = f"{scientific(best)} is best; it misses {scientific(misses[best])} of the slope."
         return Exercise("number", Between(best / 11, 11 * best), reason, slips)
+    elif number == 4:
+        (h, *_), (y,), (d,), V = (*map(np.ravel, given[:1]), *given[1:])
+        delta, slope = (y - d) * y * (1 - y), h * (1 - h)
+        right = V[1, 0] * delta[1] * slope
+        slips = [
+            (V[:, 0] @ delta * slope, "the shoulder was right. What is its δ?"),
+            (V[0, 0] * delta[0] * slope, "that is the shoulder's blame."),
+            (-right, "the sign: δ begins with y − d."),
+            (delta[1] * slope, "the blame comes through a weight of V."),
+            (right / slope, "a slope is missing, h (1 − h) or y (1 − y)."),
+        ]
+        hint = "whose δ arrives, through which weight, and how far is the unit on?"
+        return Exercise("number", right, "it collects the elbow's δ alone.", slips, hint)
     else:
         descend, x, d, level = given
         end = cache(lambda mine: descend(x, d, *mine, epochs=1000, warm_up=0)[1][-1])

@@ -138,8 +138,9 @@ def _quoted() -> None:
     quote("filters-constant", 100 * float(np.median(constant)))
 
 
-def _exercise(number: int, window: int) -> Exercise:
-    """An exercise, in a window of as many samples."""
+def _exercise(number: int, given) -> Exercise:
+    """An exercise, in a window of as many samples; `given` to the fourth its filters."""
+    window = given.shape[1] if number == 4 else given
     k = np.arange(window) - window // 2.0
     if number == 1:
         slips = [
@@ -167,6 +168,16 @@ def _exercise(number: int, window: int) -> Exercise:
     def hears(f):
         return np.abs(powers @ f) / np.linalg.norm(f) > 1e-6
 
+    if number == 4:
+        right = np.array([np.argmax(hears(f)) for f in given])
+        slips = [(right - 1, "a constant gain means position: its slope is 0, not 1.")]
+        return Exercise(
+            "numbers",
+            right,
+            "the slope of the gain is the number of the derivative.",
+            slips,
+            "double the frequency of a slow sine. Is the gain 2, 4 or 8 times as large?",
+        )
     return Exercise(
         "array",
         lambda f: hears(f).tolist() == [False] * 3 + [True],

@@ -302,9 +302,9 @@ def _near(right, tolerance: float) -> list[tuple]:
         return [(Between(low, high), tolerance, "Wrong: close, but not close enough.")]
     if isinstance(right, (str, Callable)) or not np.isfinite(_numbers(right)).all():
         return []
-    exact = "close, but here it must be exact: did you round, or leave something out?"
-    close = f"close, but not within {100 * tolerance:.3g} %: rounding, or a unit?"
-    return [(right, wide, f"Wrong: {close if tolerance > 1e-3 else exact}")]
+    closer = f"not within {100 * tolerance:.3g} %" if tolerance > 1e-3 else "here it must be exact"
+    said = f"Wrong: close, but {closer}: did you round, or leave something out?"
+    return [(right, wide, said)]
 
 
 def _numbers(wanted) -> np.ndarray:

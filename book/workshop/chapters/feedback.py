@@ -166,6 +166,10 @@ def _exercise(number: int, inertia: float, friction: float, period: float) -> Ex
             ((2, any_, any_), "the natural frequency has a root in it."),
             (OneOf(alike, twice), "in ζ both gains stand, one under a root."),
             ((any_, any_, 2), "does a stiffer spring give way more?"),
+            (
+                OneOf((any_, any_, root / 2), (any_, any_, 0.25)),
+                "a spring's angle is load over k_p.",
+            ),
         ]
         return Exercise(
             "numbers",

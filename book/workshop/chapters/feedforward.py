@@ -171,6 +171,7 @@ def _exercise(number: int, *given) -> Exercise:
         slips = [
             (1 / 5, "a softer loop errs more."),
             (25, "for slow motions the error falls with k_p, not with its root."),
+            (4, "a fifth of the error is left, not a fourth."),
         ]
         return Exercise(
             "number",

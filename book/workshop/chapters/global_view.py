@@ -23,7 +23,7 @@ from ddlib.setups import (
 )
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote, significant
-from workshop.chapters.exercises import Exercise, judging
+from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.chapters.hinton_diagrams import before_and_after
 from workshop.chapters.window_networks import intervals
 from workshop.report import committed
@@ -199,13 +199,14 @@ def _exercise(number: int, *given) -> Exercise:
             options=("larger", "smaller"),
         )
     else:
-        errors_with, alone = given
-        reason = (
-            "your units have less error than the window alone has, in training and in the test."
-        )
-        otherwise = "one of the two errors is not smaller. Try sizes that are ten times apart."
+        tried, alone = given
+        share = np.mean(np.less(tried, alone), axis=0)[1]
         return Exercise(
-            "number", lambda x: all(np.less(errors_with(x), alone)), reason, otherwise=otherwise
+            "number",
+            Between(share - 0.1, share + 0.1),
+            f"the share is {share:.2f}.",
+            [(Between(0.95), "so it is in training. Count the test alone.")],
+            "of each pair of errors, compare the second with that of the window.",
         )
 
 

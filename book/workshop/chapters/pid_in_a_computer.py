@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ddlib.control import linear
-from workshop.chapters.exercises import Exercise, fitting, judging
+from workshop.chapters.exercises import Exercise, OneOf, fitting, judging
 
 _MOST, _LEAST_DEG = 10.0, 55.0  # N m of one count, phase margin
 
@@ -52,10 +52,16 @@ def _exercise(number: int, *given: float) -> Exercise:
                     2 * inertia - seeming,
                     "expand the late velocity. Which sign has its second term?",
                 ),
-                (seeming + damper * period, "the difference and the hold are late as well."),
+                (
+                    OneOf(
+                        *(seeming + damper * x for x in (smooth, period / 2, period, late * period))
+                    ),
+                    "one of the four delays is missing, or two.",
+                ),
                 (inertia - seeming, "that is what the damper takes away."),
             ],
             "by how much is the damper's torque late, all in all?",
+            tolerance=5e-3,
             unit="kg m²",
         )
     spring, most, weight = given

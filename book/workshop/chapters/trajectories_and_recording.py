@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from scipy.spatial import Delaunay
+from scipy.spatial import ConvexHull, Delaunay
 from scipy.stats import binom
 
 from ddlib import paper
@@ -169,11 +169,11 @@ def _quoted() -> None:
     quote("recording-test", np.median(errors["test by training deviation"]))
 
 
-def _exercise(number: int, motion=None) -> Exercise:
-    """An exercise of the lesson."""
+def _exercise(number: int, given=None) -> Exercise:
+    """An exercise of the lesson; `given` the extents, or what moves the arm."""
 
     def states(share):
-        return (x[0, :, 0] for x in motion([[45.0, 45.0]], share))
+        return (x[0, :, 0] for x in given([[45.0, 45.0]], share))
 
     def speed(share):
         _, qd, _ = states(share)
@@ -193,12 +193,14 @@ def _exercise(number: int, motion=None) -> Exercise:
             "number", 2.0, "it is twice as large, and in return the velocity does not jump.", [slip]
         )
     elif number == 2:
-        draws = random_extents(12_000, seed=3).reshape(2000, 6, 2)
-        outside = np.mean([Delaunay(d[:5]).find_simplex(d[5]) < 0 for d in draws])
-        hint = "pick many sets of six pairs at random, and count."
-        return Exercise(
-            "number", outside, "the test lies outside more often than not.", (), hint, tolerance=0.1
-        )
+        inside, everywhere = (ConvexHull(x).volume / MAX_EXTENT_DEG**2 for x in (given[:-1], given))
+        slips = [
+            (inside, "that is how often it lies inside."),
+            (1 - everywhere, "leave the test out of the hull."),
+        ]
+        hint = "which share of the square's area lies outside?"
+        reason = "a few motions leave much of the square outside."
+        return Exercise("number", 1 - inside, reason, slips, hint, tolerance=0.01)
     else:
         fastest = 1.2 * speed(0.0) * (1 + 1e-9)  # 20 % is still right
         shares = np.arange(-500, 501) / 500

@@ -295,6 +295,8 @@ def _exercise(number: int, *given) -> Exercise:
             (right / half**2, "the ends are n samples from the middle, not one."),
             (right / 2, "the bend is a (n Δt)², without a factor of a half."),
             (inertia(elbow, 1), "this is the elbow's."),
+            (own, "this is the arm's own. What do three positions of the window find?"),
+            (np.polyfit(shoulder, torque[:, 0], 1)[0], "fit without a constant."),
         )
         return Exercise(
             "number",
