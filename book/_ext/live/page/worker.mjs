@@ -10,13 +10,17 @@ const usual = self.fetch.bind(self);
 self.fetch = async (...request) => {
   const answer = await usual(...request);
   if (!answer.ok || !answer.body) return answer;
+  if (answer.url.endsWith(".wasm")) {
+    tell({ bytes: Number(answer.headers.get("Content-Length")) });
+    return answer; // as it came: a browser keeps what it compiles of that, for the next page
+  }
   const count = new TransformStream({
     transform(chunk, out) {
       tell({ bytes: chunk.byteLength });
       out.enqueue(chunk);
     },
   });
-  const { headers, status } = answer; // WebAssembly is compiled as it comes by its content type
+  const { headers, status } = answer;
   return new Response(answer.body.pipeThrough(count), { headers, status });
 };
 
