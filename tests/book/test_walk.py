@@ -40,6 +40,7 @@ def test_open_cells_run_alone(page, tmp_path, monkeypatch):
             assert not wrong(nine), exercise.check
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", [page for page in PAGES if source(page).suffix == ".ipynb"])
 def test_all_cells_run(page, monkeypatch):
     """Those that the book hides, too, each page's as one program."""
