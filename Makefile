@@ -41,7 +41,7 @@ comma := ,
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
-.PHONY: help env lock book page test unmeasured lint stripped unit notebooks foreign foreign-ci pages lab live colab firefox pdf epub release assignment collect reproduce bench check mutants strip clean
+.PHONY: help env lock book page test unmeasured lint stripped unit notebooks foreign foreign-ci pages lab live colab firefox pdf epub release assignment collect gains reproduce bench check mutants strip clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
@@ -113,11 +113,11 @@ stripped: $(TESTED)
 	@echo "==> Notebooks are stored without outputs"
 	$(STRIP) --verify $(NOTEBOOKS)
 
-# Lessons' open cells, as they stand, run on the foreign machine.
+# The notebooks' cells, as they stand, run on the foreign machine.
 unit: $(TESTED)
 	@echo "==> Unit and property tests"
 	$(PYTEST) -n $(JOBS) --dist worksteal $(SLOWEST) -m "not built and not browser" \
-	  --deselect tests/book/test_walk.py::test_open_cells_run_alone
+	  -k "not (test_walk and cells_run)"
 
 notebooks: $(TESTED)  ## every notebook in a fresh process, warnings are errors
 	@echo "==> Every notebook in a fresh process, warnings are errors"
@@ -164,6 +164,9 @@ assignment: $(TESTED)  ## for nbgrader, with keys: LESSON=feedback (or all), ROS
 FOLDER ?=
 collect: $(TESTED)  ## notebooks of the assignments from pages' work files: FOLDER=returned
 	@$(WORKSHOP) book/_ext/handed_in.py "$(FOLDER)" "$(COURSE)"
+
+gains: $(READY)  ## what a class answered to the twelve questions, before and after: FOLDER=returned
+	@$(BIN)/python book/_ext/gains.py "$(FOLDER)"
 
 MIRROR ?=
 LIVE = PYTHONPATH="$$PWD/book/_ext" $(BIN)/python -m live --mirror "$(MIRROR)"

@@ -6,7 +6,6 @@ from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import ConvexHull
 
 from ddlib import paper
 from ddlib._check import finite_array, instance, integer, number, pair, seed_number, text
@@ -282,16 +281,6 @@ def predict(model: TorqueModel, recording: Recording) -> np.ndarray:
             f"got {recording.step:g} s"
         )
     return model.torque(sliding_windows(recording.q, model.weights.width, recording.motion))
-
-
-_HULL = ConvexHull(APPENDIX_I[:5])  # of the extents of the training trajectories
-
-
-def inside_hull(extents_deg) -> np.ndarray:
-    """Whether extents (degrees, shape (..., 2)) lie in the hull of the training trajectories."""
-    extents_deg = finite_array("extents_deg", extents_deg, 2)
-    distances = extents_deg @ _HULL.equations[:, :2].T + _HULL.equations[:, 2]
-    return (distances <= 1e-9).all(-1)
 
 
 def true_states(recording: Recording, setup: Setup, skip: float = 0.0) -> np.ndarray:

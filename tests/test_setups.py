@@ -11,13 +11,12 @@ from ddlib.setups import (
     JOINT_DAMPING,
     STATE_FEEDBACK,
     errors,
-    inside_hull,
     split,
     train_windows,
     true_states,
 )
 from ddlib.simulation import LOG_STEP
-from ddlib.trajectories import APPENDIX_I, pick_and_place
+from ddlib.trajectories import pick_and_place
 
 QUICK = replace(STATE_FEEDBACK, epochs=60, momentum=0.5)
 
@@ -95,13 +94,6 @@ def test_errors_are_what_their_names_say(recording, trained):
     for name, value in wanted.items():
         assert found[name].shape == (3,)
         np.testing.assert_allclose(found[name], value, rtol=1e-9, err_msg=name)
-
-
-def test_the_hull_of_the_training_trajectories():
-    assert inside_hull(APPENDIX_I[:5]).all()
-    assert not inside_hull(APPENDIX_I[5])
-    assert inside_hull(APPENDIX_I[:5].mean(0))
-    assert not inside_hull([0.0, 0.0])
 
 
 def test_true_states_are_position_and_its_derivatives(recording):

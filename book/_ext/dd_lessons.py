@@ -241,7 +241,7 @@ class Objectives(LessonDirective):
 class Lecture(LessonDirective):
     """``{lecture} name``."""
 
-    required_arguments = 1
+    required_arguments, final_argument_whitespace = 1, True
 
     def run(self):
         name = self.arguments[0]
@@ -249,7 +249,8 @@ class Lecture(LessonDirective):
         lecture = entries(self.root, "lectures").get(name)
         if lecture is None:
             raise self.error(f"book/lectures.yml has no lecture {name!r}")
-        lines = [*self.table(lecture), "", *self.answers(name, lecture["rows"])]
+        which = "the class" if name in lecture["pages"] else f"lecture {name}"
+        lines = [*self.table(lecture), "", *self.answers(which, lecture["rows"])]
         home = nodes.container()
         self.state.nested_parse(StringList(lines, "lectures.yml"), self.content_offset, home)
         return home.children
@@ -263,9 +264,8 @@ class Lecture(LessonDirective):
         shown = f"*Check yourself* of {', '.join(f'{{doc}}`{page}`' for page in pages[-2:])}"
         return [*lines, f"| {QUIZ} min | {shown} | hands first, then somebody gives the reason |"]
 
-    def answers(self, name: str, rows: list[dict]) -> list[str]:
+    def answers(self, which: str, rows: list[dict]) -> list[str]:
         """The same questions with their answers, as a fold."""
-        which = f"lecture {name}" if name.isdecimal() else "the class"
         lines = ['<details class="answer">', f"<summary>Answers of {which}</summary>", ""]
         for k, row in enumerate(rows, 1):
             lines += [f"**{k}.** {row['ask']}", ""]

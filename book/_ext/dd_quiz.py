@@ -2,7 +2,7 @@
 
 They come from the book's list, by `lessons.py`. A question is a native
 fieldset whose explanations are a fold; `_static/quiz.js` puts buttons to it. In readers' notebooks
-they are markdown.
+they are markdown. The page *Twelve questions* asks its own twice; `_static/twice.js` keeps count.
 """
 
 from __future__ import annotations
@@ -65,6 +65,8 @@ def call(app, page, text):
 class CheckYourself(SphinxDirective):
     """``{check-yourself}``: the page's questions, each a form."""
 
+    first = ""  # what a question begins with
+
     def run(self):
         asked = questions(Path(self.env.srcdir), self.env.docname)
         return [self.form(*numbered) for numbered in enumerate(asked, 1)]
@@ -84,20 +86,37 @@ class CheckYourself(SphinxDirective):
             )
             for answer in question["answers"]
         ]
-        legend = self.words("legend", question["question"])
+        legend = self.words("legend", question["question"], self.first.format(number))
         fields = Tag("", "", legend, *choices, tag="fieldset")
+        form_id = f"quiz-{question['key']}"
+        inside = Unsearched("", "", fields, self.reasons(number, question, whys))
+        return Tag("", "", inside, tag="form", classes=["quiz"], ids=[form_id])
+
+    def reasons(self, number: int, question: dict, whys: list[Tag]) -> Tag:
+        """A fold that says why."""
         summary = Tag("", "", nodes.Text(f"Answers to question {number}"), tag="summary")
         reasons = Tag("", "", *whys, tag="div", classes=["whys"])
-        fold = Tag("", "", summary, reasons, tag="details", classes=["answer"])
-        form_id = f"quiz-{question['key']}"
-        inside = Unsearched("", "", fields, fold)
-        return Tag("", "", inside, tag="form", classes=["quiz"], ids=[form_id])
+        return Tag("", "", summary, reasons, tag="details", classes=["answer"])
 
     def words(self, tag: str, text: str, begin: str = "", classes=()) -> Tag:
         """An element with a line of markdown in it, after `begin` in bold."""
         inside, messages = self.state.inline_text(text.replace("'", "’"), self.lineno)
         first = [nodes.strong(text=begin), nodes.Text(" ")] if begin else []
         return Tag("", "", *first, *inside, *messages, tag=tag, classes=list(classes))
+
+
+class BeforeAndAfter(CheckYourself):
+    """``{before-and-after}``: the page's questions, each a form that does not say what is right."""
+
+    first = "{}."
+
+    def run(self):
+        return [Tag("", "", *super().run(), tag="div", classes=["twice"])]
+
+    def reasons(self, number, question, whys):
+        """What a page shows after the second time: a browser leaves it alone until then."""
+        again = self.words("p", f"Read again: {{doc}}`{question['again']}`.")
+        return Tag("", "", *whys, again, tag="template")
 
 
 def visit(translator, node):
@@ -114,8 +133,10 @@ def passed(translator, node):
 
 def load(app, page, template, context, doctree):
     """Script and style, on pages that need them."""
-    if doctree is not None and any("quiz" in tag["classes"] for tag in doctree.findall(Tag)):
-        app.add_js_file("quiz.js", loading_method="defer")
+    tags = () if doctree is None else doctree.findall(Tag)
+    classes = {name for tag in tags for name in tag["classes"]}
+    if "quiz" in classes:
+        app.add_js_file("twice.js" if "twice" in classes else "quiz.js", loading_method="defer")
         app.add_css_file("quiz.css")
 
 
@@ -123,6 +144,7 @@ def setup(app):
     app.add_node(Tag, html=(visit, depart))
     app.add_node(Unsearched, html=(passed, passed))
     app.add_directive("check-yourself", CheckYourself)
+    app.add_directive("before-and-after", BeforeAndAfter)
     app.connect("source-read", call)
     app.connect("html-page-context", load)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -37,8 +37,9 @@ from ddlib.figures.style import fixed
 NOTE = (
     "> **Your copy of a notebook of the book.** Numbers with a dotted line below them are the "
     "book's, from the run that made its pages: they stay when you change code. Figures, tables and "
-    "widgets are the book's, too, until you run their cells. JupyterLab's *Settings > Save Widget "
-    "State Automatically* keeps yours when you save. Code that only keeps numbers is folded."
+    "widgets are the book's, too, until you run their cells. Where JupyterLab says *model not "
+    "found*, run the cell; its *Settings > Save Widget State Automatically* keeps your widgets "
+    "when you save. Code that only keeps numbers is folded."
 )
 SETUP = """# @title Where the book is not installed (in Colab, say), this fetches it: a minute, once
 import importlib.util, os, subprocess, sys
@@ -214,7 +215,7 @@ def image(address: str, alt: str) -> dict[str, str]:
     return {"text/html": tag("img", {"src": address, "alt": alt})}
 
 
-def taken(output, models: dict):
+def taken(output):
     """An output of the book's for a reader's notebook; None of what only keeps a number."""
     data = output.get("data")
     if data is None:  # something printed
@@ -224,10 +225,7 @@ def taken(output, models: dict):
     forms = {kind: text for kind, text in data.items() if kind != GLUED}
     markup = forms.get("text/html", "")
     if VIEW in forms:  # the picture is for where no widget is shown
-        model = models[forms[VIEW]["model_id"]]
-        forms = {VIEW: forms[VIEW]}
-        if "still" in model:
-            forms |= image(model["still"], model["still_alt"])
+        forms.pop("text/plain", None)
     elif "ddlib-figure" in markup:
         drawn = SVG.search(markup)
         svg = quote(fixed(drawn[0]), safe=" /:;=,()")
@@ -242,7 +240,6 @@ def taken(output, models: dict):
 def reader_notebook(of: Lesson, known: Known, executed):
     """A notebook of the book as a reader's, with outputs of the executed one: see the module."""
     plain, cells = Plain(of.page, known, values(executed)), []
-    models = {name: model["state"] for name, model in states(executed).items()}
     for cell, ran in zip(of.notebook.cells, executed.cells):
         if cell.cell_type != "code":
             text = plain.text(with_questions(cell.source, of))
@@ -252,7 +249,7 @@ def reader_notebook(of: Lesson, known: Known, executed):
         if "hide-cell" in tags:
             cells.append(nbformat.v4.new_markdown_cell(_solution(cell.source)))
             continue
-        outputs = [] if "remove-cell" in tags else [taken(o, models) for o in ran.outputs]
+        outputs = [] if "remove-cell" in tags else [taken(o) for o in ran.outputs]
         made = nbformat.v4.new_code_cell(
             QUOTED.sub("", cell.source).rstrip(), outputs=[*filter(None, outputs)]
         )
@@ -268,8 +265,8 @@ def reader_notebook(of: Lesson, known: Known, executed):
     )
     setup.metadata = {"jupyter": {"source_hidden": True}, "cellView": "form"}
     cells[1:1] = [nbformat.v4.new_markdown_cell(NOTE), setup]
-    for model in models.values():
-        model.pop("still", None)
+    for model in states(executed).values():
+        model["state"].pop("still", None)
     made = nbformat.v4.new_notebook(cells=cells, metadata=executed.metadata)
     for number, cell in enumerate(made.cells):  # the same text at every build
         cell["id"] = f"cell-{number}"

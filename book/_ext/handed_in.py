@@ -13,6 +13,7 @@ import re
 import sys
 from pathlib import Path
 from shutil import which
+from subprocess import PIPE, run
 from tempfile import mkdtemp
 
 import nbformat
@@ -108,6 +109,14 @@ class Tame(SanitizeHTML):
         return cell, resources
 
 
+def no_box() -> str:
+    """Why bubblewrap gives no box; nothing if it gives one."""
+    if not which("bwrap"):
+        return "bubblewrap is not there"
+    tried = run(["bwrap", "--unshare-all", "--ro-bind", "/", "/", "true"], stderr=PIPE, text=True)
+    return f"bubblewrap gives no box ({tried.stderr.strip()})" if tried.returncode else ""
+
+
 def configure(c):
     """Settings of nbgrader for a course of this book."""
     c.CourseDirectory.course_id = "direct-drive-arm"
@@ -122,14 +131,14 @@ def configure(c):
     before, marked = Autograde.sanitize_preprocessors, Autograde.autograde_preprocessors
     c.Autograde.sanitize_preprocessors = [Restore, *before.default()]
     c.Autograde.autograde_preprocessors = [*marked.default(), Tame]
-    if which("bwrap"):
+    if not (why := no_box()):
         os.environ["JUPYTER_PATH"] = str(BOX)
         c.Execute.kernel_name = "boxed"
         kernel, sockets = c.AsyncKernelManager, mkdtemp()  # files, as the box has no network
         kernel.transport, kernel.ip = "ipc", f"{sockets}/kernel"
         kernel.connection_file = f"{sockets}/kernel.json"
     elif "autograde" in sys.argv:
-        print("==> bubblewrap is not there: notebooks run with your rights (see Teaching).")
+        print(f"==> {why}: notebooks run with your rights (see Teaching).")
 
 
 def written(path: Path) -> dict[str, dict[str, str]]:

@@ -57,12 +57,16 @@ def disagreements(root: Path) -> list[str]:
         released = cited.get("date-released")
         wrong.append(f"CHANGELOG.md is of {newest[2]}, CITATION.cff of {released}")
     families = [author.get("family-names") for author in cited["authors"]]
-    if not all(families):
+    if not all(a.get("family-names") and a.get("given-names") for a in cited["authors"]):
         wrong.append("an author in CITATION.cff is no person: family-names, given-names")
+    if not any(a.get("email") for a in cited["authors"]):
+        wrong.append("CITATION.cff has no email, and CODE_OF_CONDUCT.md sends readers there")
     for name in BESIDE:
         text = (root / name).read_text("utf-8")
         if unnamed := [family for family in families if family and family not in text]:
             wrong.append(f"{name} does not name {', '.join(unnamed)}")
+        if "to be filled in" in text:
+            wrong.append(f'{name} still says "to be filled in"')
     if f"v{package}" not in git(root, "tag", "--points-at", "HEAD").split():
         wrong.append(f"this commit has no tag v{package}: git tag -a v{package}")
     if git(root, "status", "--porcelain"):

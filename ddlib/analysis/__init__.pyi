@@ -1,5 +1,6 @@
 from .coverage import (
     cells_reached as cells_reached,
+    inside_hull as inside_hull,
     log10_reachable_share as log10_reachable_share,
     principal_deviations as principal_deviations,
     used_dimensions as used_dimensions,

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
-from ddlib._check import integer, number, shaped
+from ddlib._check import finite_array, integer, number, shaped
+from ddlib.trajectories import APPENDIX_I
 
 
 def cells_reached(samples, radius: float, cells: int) -> int:
@@ -42,3 +44,13 @@ def principal_deviations(samples) -> np.ndarray:
     integer("samples", len(samples), 2)
     values = np.linalg.svd(samples - samples.mean(0), compute_uv=False)
     return values / np.sqrt(len(samples))
+
+
+_HULL = ConvexHull(APPENDIX_I[:5])  # of the extents of the training trajectories
+
+
+def inside_hull(extents_deg) -> np.ndarray:
+    """Whether extents (degrees, shape (..., 2)) lie in the hull of the training trajectories."""
+    extents_deg = finite_array("extents_deg", extents_deg, 2)
+    distances = extents_deg @ _HULL.equations[:, :2].T + _HULL.equations[:, 2]
+    return (distances <= 1e-9).all(-1)

@@ -15,7 +15,7 @@ from ddlib.figures.style import FAINT, Illustration, illustrate, looks
 def poles_and_bode(
     loops: Mapping[str, control.lti.LTI], alt: str, *, decay: float, sampled=None
 ) -> Illustration:
-    """Root loci of loops by python-control, and their Bode plots beside these.
+    """Root loci of loops by python-control, and their Bode plots beside these, margins thick.
 
     Parameters
     ----------
@@ -39,21 +39,27 @@ def poles_and_bode(
         for name, system in systems.items():
             instance(f"{kind}[{name!r}]", system, control.lti.LTI)
     w = decay * np.geomspace(1 / 8, 25, 400)  # rad/s
+    gains = np.geomspace(1e-3, 4, 1000)
+    paths = {name: control.root_locus_map(L, gains=gains).loci for name, L in loops.items()}
 
     def draw(figure: Figure):
         places = [["loci", "gain"], ["loci", "phase"]]
         loci, *pair = figure.subplot_mosaic(places).values()
         for name, L in loops.items():
             look = looks(loops)[name].line
-            paths = control.root_locus_map(L, gains=np.geomspace(1e-3, 4, 3000)).loci
-            loci.plot(paths.real, paths.imag, **look)
+            loci.plot(paths[name].real, paths[name].imag, **look)
             now = control.feedback(L).poles()
             loci.plot(now.real, now.imag, "o", color=look["color"])
             look |= {"dB": True, "ax": np.c_[pair], "title": "", "legend_loc": False}
             control.bode_plot(sampled[name], w, **look)
+            seen = control.frequency_response(sampled[name], w)
+            at = np.flatnonzero(np.diff(seen.magnitude > 1))  # where the gain crosses 0 dB
+            margin = np.angle(-np.exp(1j * seen.phase[at]), deg=True)
+            pair[1].vlines(w[at], -180, margin - 180, color=look["color"], lw=4)
         loci.axvspan(-3.2 * decay, -decay, color=FAINT, alpha=0.2, lw=0)
         loci.set(xlim=(-3.2 * decay, 0.4 * decay), ylim=(-2 * decay, 2 * decay))
         loci.set(xlabel="real part, 1/s", ylabel="imaginary part, rad/s")
+        pair[1].axhline(-180, color=FAINT, lw=0.8)
         pair[0].set(ylabel="gain |L|, dB", xlim=(w[0], w[-1]), ylim=(-60, 60))
         pair[1].set(ylabel="phase, °", xlabel="frequency, rad/s", xlim=(w[0], w[-1]))
         pair[0].legend(pair[0].lines[:: len(pair[0].lines) // len(loops)], list(loops))

@@ -1,7 +1,6 @@
 """Interactive figures: at any setting with a kernel, at those of a table in the built page.
 
-- ``picker``, ``switches``, ``explorer``: a widget each, named after what the reader handles;
-  ``hinton``: a diagram of all weights
+- ``picker``, ``switches``: a widget each, named after what the reader handles
 - ``engine``: widgets that compute in the page, and the live engine that they share
 - ``base``: `CurveWidget`, a function of a few parameters that returns curves; ``table``: its curves
   at every setting, for the page; ``still``: its start as a picture

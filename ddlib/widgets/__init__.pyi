@@ -5,9 +5,6 @@ from .base import (
 from .engine.trainer import (
     NetworkTrainer as NetworkTrainer,
 )
-from .explorer import (
-    FilterExplorer as FilterExplorer,
-)
 from .parts.panels import (
     Mark as Mark,
     Pad as Pad,

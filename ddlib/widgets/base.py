@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from html import escape
 
 import anywidget
 import numpy as np
@@ -38,10 +39,22 @@ class PageWidget(anywidget.AnyWidget):
     still = Still(help="the starting state as a picture", read_only=True).tag(sync=True)
     still_alt = t.Unicode(read_only=True).tag(sync=True)
 
+    _parameters = ()  # traits that a reader sets
+
+    def __repr__(self):
+        values = (f"{name}={getattr(self, name)!r}" for name in self._parameters)
+        return f"{type(self).__name__}({', '.join(values)})"
+
     def _keep(self, **values):
         """Set traits that are read-only for others."""
         for name, value in values.items():
             self.set_trait(name, value)
+
+    def _repr_html_(self) -> str | None:
+        """The still picture, for viewers that show no widget."""
+        if self.still:
+            return f'<img src="{self.still}" alt="{escape(self.still_alt)}">'
+        return None
 
 
 class CurveWidget(PageWidget):
@@ -88,10 +101,6 @@ class CurveWidget(PageWidget):
 
     _esm = bundle("curves.js")
     _css = styles()
-
-    def __repr__(self):
-        values = (f"{name}={getattr(self, name)!r}" for name in self._parameters)
-        return f"{type(self).__name__}({', '.join(values)})"
 
     baked = t.Bytes(help="the curves at every setting", read_only=True).tag(sync=True)
     request = t.Int(0, help="counts the page's requests for exact curves").tag(sync=True)

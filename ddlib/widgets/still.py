@@ -8,7 +8,6 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import traitlets
-from matplotlib.ticker import MultipleLocator
 
 from ddlib.figures import FAINT, INK, TONES, illustrate
 from ddlib.figures.style import fixed
@@ -89,15 +88,7 @@ def _draw_panel(ax, panel: Panel, curves):
         ax.axvline(*places, color=FAINT, linewidth=1)
     elif places:
         ax.axvspan(*sorted(places), color=TONES["window"], alpha=0.2, linewidth=0)
-    ax.set(
-        xscale=panel.x_scale.replace("power", "linear"),
-        yscale=panel.y_scale.replace("power", "linear"),
-    )
-    for axis, scale in ((ax.xaxis, panel.x_scale), (ax.yaxis, panel.y_scale)):
-        if scale == "power":
-            axis.set_major_locator(MultipleLocator(1))
-            axis.set_major_formatter(lambda power, _: f"{10**power:,.7g}")
-    ax.set(title=panel.y_label, xlabel=panel.x_label)
+    ax.set(title=panel.y_label, xlabel=panel.x_label, xscale=panel.x_scale, yscale=panel.y_scale)
     if panel.ticks:
         ax.set_xticks(*zip(*panel.ticks))
     if panel.y_range:

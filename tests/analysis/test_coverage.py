@@ -5,10 +5,12 @@ import pytest
 
 from ddlib.analysis import (
     cells_reached,
+    inside_hull,
     log10_reachable_share,
     principal_deviations,
     used_dimensions,
 )
+from ddlib.trajectories import APPENDIX_I
 
 
 def test_cells_are_counted_once_and_only_inside():
@@ -33,3 +35,10 @@ def test_deviations_are_those_of_a_known_distribution():
     samples = rng.normal(size=(200_000, 5)) * [3, 2, 1, 0.1, 0] @ turn.T + 7
     np.testing.assert_allclose(principal_deviations(samples), [3, 2, 1, 0.1, 0], atol=0.02)
     assert [used_dimensions(samples, x) for x in (0.05, 0.5, 2.5, 10)] == [4, 3, 1, 0]
+
+
+def test_the_hull_of_the_training_trajectories():
+    assert inside_hull(APPENDIX_I[:5]).all()
+    assert not inside_hull(APPENDIX_I[5])
+    assert inside_hull(APPENDIX_I[:5].mean(0))
+    assert not inside_hull([0.0, 0.0])

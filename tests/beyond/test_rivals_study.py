@@ -3,8 +3,9 @@
 import numpy as np
 
 from beyond.studies import lineup, rivals
+from ddlib.analysis import inside_hull
 from ddlib.learning import Weights
-from ddlib.setups import STATE_FEEDBACK, inside_hull
+from ddlib.setups import STATE_FEEDBACK
 from workshop.report import results
 
 

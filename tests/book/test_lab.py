@@ -223,9 +223,9 @@ def is_pulled(page, handle: Handle, model: str = ""):
     wait(page, "the release", lambda: handle.root.evaluate(mode) == "free", ANSWER)
 
 
-@pytest.fixture
-def opened(lab, browser):
-    """JupyterLab with nothing open; its scripts make no errors."""
+@pytest.fixture(scope="module")
+def started(lab, browser):
+    """JupyterLab in a page, and the errors that its scripts make."""
     context = browser.new_context(viewport={"width": 1400, "height": 900})
     context.set_default_timeout(1000 * STARTING)
     context.add_init_script(path=ROOT / "tests" / "support" / "lab.js")
@@ -234,10 +234,17 @@ def opened(lab, browser):
     page.on("pageerror", lambda error: errors.append(str(error)))
     page.goto(f"{lab}lab?token={TOKEN}&reset")
     page.wait_for_selector("#jp-main-dock-panel")
+    yield page, errors
+    context.close()
+
+
+@pytest.fixture
+def opened(started):
+    """JupyterLab with nothing open; its scripts make no errors."""
+    page, errors = started
     yield page
     page.evaluate("lab.close()")
     assert not errors
-    context.close()
 
 
 @pytest.mark.parametrize("name", CHAPTERS)

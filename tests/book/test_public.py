@@ -108,6 +108,7 @@ def test_all_notebooks_come_in_one_archive(built):
 
 
 CITED = "version: {}\ndate-released: {}\nauthors:\n- {}\n"
+NOETHER = "{family-names: Noether, given-names: Emmy, email: noether@example.org}"
 
 
 @pytest.fixture
@@ -115,7 +116,7 @@ def tagged(tmp_path):
     """A folder that could be released: what `release.disagreements` reads, committed and tagged."""
     texts = {
         "ddlib/__init__.py": '__version__ = "1.2.0"\n',
-        "CITATION.cff": CITED.format("1.2.0", "2026-01-31", "family-names: Noether"),
+        "CITATION.cff": CITED.format("1.2.0", "2026-01-31", NOETHER),
         **dict.fromkeys(release.BESIDE, "Emmy Noether"),
         "CHANGELOG.md": "# Changes\n\n## 1.2.0 (2026-01-31)\n\n- New.\n\n## 1.1.0 (2025-01-31)\n",
     }
@@ -134,9 +135,11 @@ def test_a_release_needs_tag_citation_and_changelog_to_agree(tagged):
     (tagged / "CITATION.cff").write_text(CITED.format("1.1.0", "2026-01-30", "family-names: Curie"))
     told = " ".join(release.disagreements(tagged))
     assert "paper/paper.md does not name Curie" in told
+    (tagged / "paper/paper.md").write_text("Marie Curie, of: to be filled in")
+    assert "paper/paper.md still says" in " ".join(release.disagreements(tagged))
     (tagged / "CITATION.cff").write_text(CITED.format("1.1.0", "2026-01-30", "name: Some group"))
     told = " ".join(release.disagreements(tagged))
-    assert "no person" in told
+    assert "no person" in told and "no email" in told
     assert "CITATION.cff 1.1.0" in told and "2026-01-30" in told and "not committed" in told
     (tagged / "CHANGELOG.md").write_text("# Changes\n\n## 1.3.0 (2026-02-01)\n")
     assert "begins with 1.3.0" in " ".join(release.disagreements(tagged))

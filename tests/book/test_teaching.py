@@ -14,7 +14,7 @@ LECTURES = entries(ROOT, "lectures")
 ROWS = [(name, k, row) for name, told in LECTURES.items() for k, row in enumerate(told["rows"], 1)]
 IDS = [f"{name}-{k}" for name, k, _ in ROWS]
 OPENED = [dd_lessons.OPEN.fullmatch(row["open"]) for _, _, row in ROWS]
-SOURCE = (ROOT / "book" / "teaching.md").read_text(encoding="utf-8")
+SOURCE = "".join((ROOT / "book" / f"{p}.md").read_text("utf-8") for p in ("teaching", "labs"))
 
 
 def test_each_question_has_what_a_teacher_needs():
@@ -37,9 +37,9 @@ def test_lectures_leave_time_for_the_quiz():
 
 @pytest.mark.built
 def test_lectures_stand_on_the_page(parsed):
-    page = parsed("book/teaching")
     for name, lecture in LECTURES.items():
-        which = f"lecture {name}" if name.isdecimal() else "the class"
+        page = parsed("book/labs" if " of " in name else "book/teaching")
+        which = "the class" if name in lecture["pages"] else f"lecture {name}"
         fold = page.find("summary", string=f"Answers of {which}").parent
         opened = [li for li in fold.select("li") if li.get_text().startswith("Open:")]
         assert len(opened) == len(lecture["rows"]) and all(li.find("a") for li in opened)

@@ -1,7 +1,7 @@
 """Lessons: short, with code in the open that runs alone, follows changes, and judges answers."""
 
 import pytest
-from book_pages import ROOT, WALK
+from book_pages import PAGES, ROOT, WALK, code_cells, source
 from chapter_rules import SHAPE, TUTORIAL
 from nine_answers import Nine, wrong
 from open_cells import CHANGES, SHORT, execute, exercises, imports, lesson, run
@@ -38,6 +38,16 @@ def test_open_cells_run_alone(page, tmp_path, monkeypatch):
         with monkeypatch.context() as patch:
             patch.setattr(engine, "judge", nine.judge)
             assert not wrong(nine), exercise.check
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", [page for page in PAGES if source(page).suffix == ".ipynb"])
+def test_all_cells_run(page, monkeypatch):
+    """Those that the book hides, too, each page's as one program."""
+    monkeypatch.chdir(source(page).parent)
+    space = {"__name__": "__main__"}
+    for number, cell in enumerate(code_cells(source(page))):
+        execute(cell, space, f"{page}: {number}")
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,9 @@
-"""The mass under a penalty: figure, widget and measures say what the study found."""
+"""The mass under a penalty: measures say what the study found."""
 
 import numpy as np
 import pytest
-from widget_pages import assert_exact_table
 
-from ddlib.analysis import gains
-from ddlib.simulation import LOG_STEP
 from workshop.chapters import excitation
-from workshop.chapters.excitation import MassAndPenalty
 from workshop.report import results
 from workshop.report.studies.excitation import DRIVES, later, training_set
 
@@ -51,22 +47,3 @@ def test_leaving_out_the_start_moves_the_motion():
     data, rest = training_set(whole), training_set(later(whole, 1.0))
     cut = data.inputs.unscale(data.x, -2).reshape(5, -1, 2, 21)[:, 100:].reshape(-1, 2, 21)
     assert np.allclose(cut, rest.inputs.unscale(rest.x, -2))
-
-
-@pytest.fixture(scope="module")
-def widget():
-    return MassAndPenalty(("state feedback", "damped joints"))
-
-
-def test_widget_shows_the_mass_going(widget):
-    widget.set_trait("skip", 1.0)
-    widget.set_trait("penalty", 1e-3)
-    shown = widget.curves
-    assert shown["now"] < 0.1 < 6 < shown["mass"][0]
-    assert np.isclose(gains(shown["filter"], LOG_STEP)[2], shown["now"])
-    assert 1e-7 < 10 ** shown["half"] < 1e-5
-
-
-def test_widget_fits_into_the_page(widget):
-    assert widget.baked_bytes < 60_000
-    assert_exact_table(widget)

@@ -10,6 +10,7 @@ from ddlib.learning import Weights, cases
 from ddlib.setups import JOINT_DAMPING
 from ddlib.simulation import LOG_STEP
 from workshop.chapters import inertia_in_the_weights, whose_filters as chapter
+from workshop.chapters.widgets.hero import twins
 from workshop.chapters.widgets.starts import UnitFromFiveStarts
 from workshop.chapters.widgets.weigh import WeighTheArm
 from workshop.chapters.widgets.whose import GuessRound, WhoseFilters
@@ -89,29 +90,52 @@ def test_one_unit_is_shown_before_and_after():
     assert_exact_table(widget)
 
 
-def test_the_sum_over_all_samples_is_the_inertia():
-    g = np.random.default_rng(0).normal(size=(2, 2, 21))
-    widget = WeighTheArm({"one": g, "other": 2 * g}, {"one": np.eye(2), "other": 3 * np.eye(2)})
-    widget.reach, widget.learnt, widget.entry = 10, "other", "coupling"
-    shown = widget.curves
-    assert np.isclose(shown["now"], gains(2 * g, LOG_STEP)[0, 1, 2]) and shown["true"] == 0
-    assert np.isclose(shown["sum"][-1], shown["now"])
-    widget.reach = 1
-    inner = (LOG_STEP**2 / 2 * 2 * g[0, 1, [9, 11]]).sum()
-    counted = widget.curves["sum"]
-    assert np.allclose(counted[:2], [0, inner]) and np.allclose(counted[2:], inner)  # beyond: none
+@pytest.fixture(scope="module")
+def scales():
+    """The arm on the scales, with a network that learnt it and one that learnt a spring."""
+    windows, _ = cases(committed.training(JOINT_DAMPING.name), 21)
+    networks = {twin.learnt: twin.model for twin in twins()}
+    return WeighTheArm(networks, windows, 6.4, lambda load: load * np.full((2, 2), 0.8))
+
+
+@pytest.mark.parametrize("twin", twins(), ids=lambda twin: twin.name)
+def test_all_samples_weigh_as_on_the_first_page_and_what_is_written_weighs_more(scales, twin):
+    at = {"reach": 10, "learnt": twin.learnt}
+    whole = scales.curves_at(**at)
+    assert whole["sum"] == pytest.approx(twin.inertia, rel=0.01, abs=2e-3)
+    assert np.isclose(whole["parts"].sum(), whole["sum"]) and whole["own"] == 6.4
+    inner = scales.curves_at(**{**at, "reach": 3})
+    assert np.isclose(inner["sum"], whole["parts"][7:14].sum())
+    loaded = scales.curves_at(**at, load=2)
+    assert np.isclose(loaded["own"], 8.0) and loaded["sum"] == whole["sum"]
+    written = scales.curves_at(**at, load=2, pencil=True)
+    more = written["sum"] - whole["sum"]  # a steeper sum bends the outputs' sigmoids more
+    assert more == pytest.approx(1.6, rel=0.15)
 
 
 @pytest.mark.browser
-def test_the_scales_follow_the_pointer(page_with):
-    g = np.random.default_rng(0).normal(size=(2, 2, 21))
-    page = page_with(
-        WeighTheArm({"one": g, "other": g}, dict.fromkeys(("one", "other"), np.eye(2)))
-    )
-    for chart, place, reach in ((0, 0.75, 5), (1, 0.0, 10), (2, 0.3, 3)):
+def test_the_scales_follow_the_pointer_and_a_written_load_levels_them(page_with, scales):
+    page = page_with(scales, calm=True)
+    view = "document.querySelector('.ddlib-weigh').view"
+
+    def tilt():
+        page.evaluate(NEXT_FRAME)
+        return page.evaluate("""(() => {
+          const { y1, y2 } = document.querySelector('.beam');
+          return y2.baseVal.value - y1.baseVal.value; // positive: down on the network's side
+        })()""")
+
+    assert tilt() < -20
+    for chart, place, reach in ((0, 0.75, 5), (1, 0.0, 10)):
         frame = page.locator(".chart path.frame").nth(chart).bounding_box()
         drag(page, frame, (0.5, 0.5), (place, 0.5))
-        assert page.evaluate("document.querySelector('.ddlib-scales').view.get('reach')") == reach
+        assert page.evaluate(f"{view}.get('reach')") == reach
+    bare = page.locator(".load[d='M0 0']")
+    assert 0 < tilt() < 12 and bare.count() == 1
+    page.get_by_label("Load in the hand").fill("5")
+    assert tilt() < -12 and bare.count() == 0
+    page.get_by_label("Write it into the weights").check()
+    assert abs(tilt()) < 12
 
 
 def test_paths_add_up_to_the_network():

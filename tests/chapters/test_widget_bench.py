@@ -81,12 +81,23 @@ def test_folded_by_pointer_then_tilted_by_keys(page_with, widget):
     lift.press("ArrowDown")
     tilt.press("End")
     page.evaluate(NEXT_FRAME)
-    assert (
-        page.locator(".verdict").inner_text() == "Tilted: a steady speed. Only the odd jar fills."
-    )
+    said = page.locator(".verdict").inner_text()
+    assert said == "Tilted: a steady speed. Only the odd jar moves."
     answer = (ROWS["line"] @ np.deg2rad(50.0 * LOG_STEP * S)).item()
     number = page.locator(".band.odd .number").text_content()
     assert float(number.replace("−", "-")) == pytest.approx(answer, rel=0.02)
+    above_zero = """() => {
+      const [level, zero] = ['.band.odd .level', '.pours'].map((part) => {
+        const { y, height } = [...document.querySelectorAll(part)].at(-1).getBoundingClientRect();
+        return y + height / 2;
+      });
+      return zero - level;
+    }"""
+    assert page.evaluate(above_zero) * answer > 0
+    tilt.press("Home")
+    page.evaluate(NEXT_FRAME)
+    assert page.evaluate(above_zero) * answer < 0  # what is negative lies below zero
+    tilt.press("End")
     page.wait_for_function("location.search.includes('tilt:50')")
     play.click()
     page.wait_for_function("document.querySelector('.verdict').textContent.startsWith('Dashed')")

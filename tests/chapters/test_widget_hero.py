@@ -101,6 +101,15 @@ def test_rubber_stops_keep_the_arm_in_the_picture(moved, widget):
 # In a page without a kernel
 
 
+COVERED = """(() => {
+  const box = (el) => el.getBoundingClientRect();
+  const words = [...document.querySelectorAll('.legend-truth, .legend-told')].map(box);
+  const drawn = [...document.querySelectorAll('.letter, .arc:not(g[class^=legend] *)')];
+  return drawn.map(box).filter((a) =>
+    words.some((b) => a.x < b.right && b.x < a.right && a.y < b.bottom && b.y < a.bottom));
+})()"""
+"""Badges and arcs that lie on the words that explain them."""
+
 BENT = "parseFloat(document.querySelector('text.bend').textContent.slice(5))"
 
 
@@ -185,13 +194,17 @@ def test_by_keyboard_alone(page_with, widget):
 
 @pytest.mark.browser
 def test_thrown_by_the_mouse(page_with, widget):
-    page = page_with(widget, calm=True)
+    page = page_with(widget, calm=True, query="?hero=weighed:true")
     x, y = middle(page.locator(".hand-handle .ring").bounding_box())
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x - 120, y + 30, steps=4)
     until(page, "world.mode === 'held' && Math.abs(world.samples.at(-1).v[0]) > 0.05")
     assert page.locator(".rope").get_attribute("visibility") == "visible"
+    x, y = middle(page.locator(".joint.shoulder").bounding_box())
+    page.mouse.move(x + 150, y + 40, steps=4)
+    until(page, "world.samples.at(-1).q[0] < -1")  # it hangs low
+    assert page.evaluate(COVERED) == []
     page.mouse.up()
     until(page, "world.mode === 'free'")
     assert not page.locator(".bait").is_visible()

@@ -231,7 +231,7 @@ def test_time_stands_where_the_run_stopped(page_with, tuner):
     page.evaluate(NEXT_FRAME)
     stopped = TIMES[page.evaluate(SEEN)["stopped"]]
     assert stopped < 3 and float(time.input_value()) == pytest.approx(stopped)
-    page.locator(".arm.now.stopped").wait_for(state="attached")
+    page.locator(".arm.real.stopped").wait_for(state="attached")
     page.get_by_role("button", name="Play").click()  # from the start again
     assert float(time.input_value()) == 0
 

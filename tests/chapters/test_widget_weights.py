@@ -11,7 +11,7 @@ from widget_pages import NEXT_FRAME, settings
 
 from ddlib.learning import Weights
 from ddlib.simulation import LOG_STEP
-from workshop.chapters.widgets.weights import WeightReader
+from workshop.chapters.widgets.weights import WeightReader, _diagram
 
 WIDTH, HIDDEN = 11, 5
 SIDE = 18.0
@@ -63,6 +63,15 @@ def test_curves_are_the_weights_less_the_start(widget, pair):
         assert off < 2e-3  # it is in the diagram, too
 
 
+def test_diagram_holds_every_weight_once(pair):
+    weights = pair[1]
+    fields = ("hidden_weights", "hidden_bias", "direct_weights", "output_bias")
+    counted = [getattr(weights, name).ravel() for name in fields]
+    # the weights between hidden and output units are drawn at both ends
+    expected = np.sort(np.concatenate([*counted, np.repeat(weights.output_weights, 2)]))
+    np.testing.assert_array_equal(np.sort(_diagram(weights)), expected)
+
+
 # In a page without a kernel
 
 
@@ -92,6 +101,10 @@ def assert_shown(page, pair, unit, joint, subtract):
     np.testing.assert_allclose(drawn[:, 0], np.array(places)[shown], atol=0.5)  # square over stem
 
 
+CHOSEN = "document.querySelector('.hinton [aria-selected=true]').getAttribute('aria-label')"
+FILLS = "(all) => all.map((path) => getComputedStyle(path).fill)"
+
+
 @pytest.mark.browser
 def test_press_a_row_and_subtract_the_start(page_with, widget, pair):
     page = page_with(widget, calm=True)
@@ -101,5 +114,9 @@ def test_press_a_row_and_subtract_the_start(page_with, widget, pair):
     switch = page.get_by_label("Subtract the start")
     switch.press(" ")
     assert_shown(page, pair, "hidden 2", "elbow", True)
-    page.locator("svg.hinton").first.press("ArrowUp")
-    assert_shown(page, pair, "hidden 2", "shoulder", True)
+    for key in ("ArrowUp", "ArrowUp", "ArrowLeft"):  # by hidden 3, shoulder, to hidden 1, elbow
+        page.locator("svg.hinton").first.press(key)
+    assert_shown(page, pair, "hidden 0", "elbow", True)
+    assert page.evaluate(CHOSEN) == "hidden 1, elbow's window"
+    fills = page.locator("svg.hinton path").evaluate_all(FILLS)
+    assert fills == ["rgb(255, 255, 255)", "rgb(0, 0, 0)"]  # the paper's: white is positive

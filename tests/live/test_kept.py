@@ -7,6 +7,7 @@ import nbformat
 import pytest
 from live import packages
 from live.handles import handles
+from names import names
 
 from ddlib.trajectories import KEPT_IN
 
@@ -94,12 +95,33 @@ def test_a_handle_moves_a_number_of_the_code_by_round_steps(reader):
     cell = nbformat.v4.new_code_cell("kp = (750.0, 0.05)  # N m/rad\nn = 9")
     cell.metadata["dd"] = {"handles": {"kp": {}, "n": {}}}
     tab = reader({"id": "one", "source": cell.source, "handles": handles(cell)})
-    first, second, third = tab.locator(".live-handles input").all()
-    for slider, key in ((first, "ArrowRight"), (second, "ArrowLeft"), (third, "ArrowRight")):
+    choice, slider, told = tab.get_by_role("combobox"), tab.get_by_role("slider"), []
+    for name, key in (("kp[0]", "ArrowRight"), ("kp[1]", "ArrowLeft"), ("n", "ArrowRight")):
+        choice.select_option(name)
+        assert slider.get_attribute("aria-label") == name
         slider.press(key)
+        told.append(slider.get_attribute("aria-valuetext"))
     assert field(tab, 0).input_value() == "kp = (800.0, 0.048)  # N m/rad\nn = 10"
-    told = [slider.get_attribute("aria-valuetext") for slider in (first, second, third)]
     assert told == ["800", "0.048", "10"]
+
+
+def test_handles_of_what_is_in_view_are_offered_and_stay_in_view(reader):
+    cell = nbformat.v4.new_code_cell("a = 1\nb = 2.0\nc = 2 * b\nd = 3")
+    cell.metadata["dd"] = {"handles": {"a": {}, "b": {}, "d": {}}}
+    sources = (cell.source, "a + 0", "c + a", "e = 5")
+    given = [{"source": s, "names": names(s, set()).as_dict()} for s in sources]
+    given = [{"id": f"c{k}", **each} for k, each in enumerate(given)]
+    tab = reader({**given[0], "handles": handles(cell)}, *given[1:])
+    tab.add_style_tag(path=packages.PAGE / "live.css")
+    tab.add_style_tag(content="[data-live] { min-height: 800px }")
+    tab.locator("main").evaluate("(e) => (e.className = 'bd-article')")
+    choice = tab.get_by_role("combobox")
+    offered = "(e) => [e.selectedOptions[0].text, ...[...e.options].map((o) => o.text)]"
+    for place, wanted in ((2, "aab"), (1, "aa"), (3, "aabd"), (2, "aab")):
+        tab.locator(f"[data-live=c{place}]").evaluate("(e) => e.scrollIntoView()")
+        tab.wait_for_timeout(200)
+        assert "".join(choice.evaluate(offered)) == wanted
+    assert tab.get_by_role("slider").bounding_box()["y"] < 100
 
 
 def test_code_that_the_book_has_changed_since_is_kept(reader):
@@ -156,17 +178,27 @@ def test_where_nothing_more_is_kept_it_is_told_and_a_file_has_all(reader):
     tab.evaluate(FULL)
     field(tab, 1).fill("b = 20")
     assert "keeps nothing" in tab.locator(".live-kept").text_content()
-    assert "keeps no changes" in tab.locator(".live-status").text_content()  # beside the button
+    beside = tab.locator(".live-status")  # of the button
+    assert "until you leave the page; “Save as a file” keeps" in beside.text_content()
     field(tab, 0).fill("a = 11")
     found = saved(tab)["pages"]["a.html"]["changes"]
     assert {name: code for name, (_, code) in found.items()} == {"one": "a = 11", "two": "b = 20"}
     assert "keeps nothing" in take(tab, file(b={"changes": {"one": ["a = 1", "a = 7"]}}))[1]
 
 
+def test_where_storage_is_blocked_it_is_said_beside_the_button_before_it_is_pressed(browser):
+    tab = browser.new_page()
+    refuse = "Object.defineProperty(window, 'localStorage', {get() { throw new Error('blocked') }})"
+    tab.add_init_script(refuse)
+    tab.goto(live_pages.set_up(tab, [ONE]))
+    assert tab.locator(".live-status").text_content() == "your changes last until you leave"
+
+
 def test_another_book_of_the_server_is_left_alone(reader):
     tab = reader()
     tab.evaluate("() => localStorage.setItem('live:/other/a.html', 'theirs')")
     tab.evaluate("() => localStorage.setItem('quiz:/', '[\"quiz-1\"]')")
+    tab.evaluate("() => localStorage.setItem('quiz-twice:/', '{}')")
     tab.get_by_role("switch").check()
     field(tab, 0).fill("a = 10")
     assert saved(tab)["pages"].keys() == {"a.html"}

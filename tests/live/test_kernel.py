@@ -167,3 +167,48 @@ def test_ensembles_train_with_the_progress_bar_and_the_one_thread_of_a_page(monk
     monkeypatch.setattr(descent, "tqdm", kernel.Progress)
     monkeypatch.setattr(threads, "ThreadPoolExecutor", kernel.OneThread)
     np.testing.assert_array_equal(train()[1].training, wanted.training)
+
+
+MASS = """
+import functools
+class Arm:
+    __slots__ = ("links", "__dict__")
+    def __init__(self):
+        self.mass, self.links = 1.0, [1]
+    @property
+    def slow(self):
+        raise RuntimeError
+    @functools.cached_property
+    def late(self):
+        raise RuntimeError
+    def __getattr__(self, name):
+        raise RuntimeError
+arm = Arm()
+"""
+
+
+@pytest.mark.parametrize(
+    ("path", "some"),
+    [
+        ("arm", {"mass", "links", "slow", "late"}),
+        ("arm.links", {"append"}),
+        ("arm.mass", {"real"}),
+        ("str", {"join"}),
+        ("arm.slow", None),
+        ("arm.late", None),
+        ("arm.nothing", None),
+        ("nobody", None),
+    ],
+)
+def test_names_for_the_editor_are_looked_up_and_nothing_is_called(run, path, some):
+    run(MASS, "one")
+    run("arm = 0", "two", ["one"])
+    found = json.loads(kernel.parts(path, False, ["one"]))  # not what a cell below gave
+    assert some <= set(found) if some else found == []
+
+
+def test_names_to_import_are_those_of_the_module_itself():
+    assert json.loads(kernel.parts("ddlib.metrics", True, [])) == ["rmss"]
+    assert "pd" in json.loads(kernel.parts("ddlib.control", True, []))
+    assert json.loads(kernel.parts("ddlib.nothing", True, [])) == []
+    assert json.loads(kernel.parts("antigravity", True, [])) == []  # nobody asked for it

@@ -82,11 +82,13 @@ def test_code_is_compiled_once_by_the_python_that_runs_it(tmp_path, monkeypatch)
     monkeypatch.setenv("PATH", str(tmp_path))
     out = tmp_path / "out"
     out.mkdir()
-    for name in ("a.whl", "workshop.zip"):
-        (out / name).write_bytes(packages.zipped({"a.py": name.encode()}))
-    for _ in range(2):
-        packages.compile_all(out, tmp_path / "store")
-    assert (tmp_path / "asked").read_text() == "asked "
+    names = []
+    for code in ("one", "two", "one"):
+        (out / "a-1.whl").write_bytes(packages.zipped({"a.py": code.encode()}))
+        names.append(packages.compile_all(out, tmp_path / "store")["a-1.whl"])
+    assert (tmp_path / "asked").read_text() == "asked asked "
+    # no browser takes a file for one that it kept before it changed
+    assert names[0] == names[2] != names[1] and {path.name for path in out.iterdir()} == {*names}
 
 
 def test_a_widget_finds_in_a_page_what_it_imports_of_its_still():

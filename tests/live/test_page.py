@@ -11,7 +11,7 @@ import pytest
 from axe import violations
 from book_pages import WALK
 from live.cells import live_cells
-from live_pages import IDLE
+from live_pages import IDLE, code
 from open_cells import lesson
 
 from ddlib.setups import STATE_FEEDBACK
@@ -37,7 +37,7 @@ def test_a_reader_changes_a_cell_and_goes_back(browser, site):
     tab.get_by_role("button", name="Run this page").click()
     tab.get_by_role("button", name="Stop").click()
     field = tab.get_by_role("textbox").first
-    built = field.input_value()
+    built = code(field)
     told = "import hashlib\nprint(hashlib.sha256(r.q.tobytes()).hexdigest(), abs(r.tau).sum())"
     field.fill(f"from ddlib.setups import STATE_FEEDBACK\nr = STATE_FEEDBACK.record()\n{told}")
     field.press("Control+Enter")
@@ -49,9 +49,9 @@ def test_a_reader_changes_a_cell_and_goes_back(browser, site):
     assert not violations(tab)
     tab.reload()
     tab.get_by_role("button", name="Run this page").click()
-    assert "STATE_FEEDBACK" in field.input_value()  # it was kept
+    assert "STATE_FEEDBACK" in code(field)  # it was kept
     tab.get_by_role("button", name="Reset").click()
-    assert field.input_value() == built
+    assert code(field) == built
     field.press("Tab")  # passed through, a field lets go
     assert tab.get_by_role("button", name="Run: cell 1", exact=True).evaluate(FOCUSED)
     assert all(url.startswith((f"{site}/", f"blob:{site}/")) for url in asked)
@@ -113,13 +113,14 @@ def test_work_is_judged_and_kept_on_the_device_alone(browser, site, tmp_path):
 
     tab.get_by_role("button", name="Run the solution").first.click()
     tab.locator(".live-beside >> text=Right").wait_for(timeout=300_000)
-    assert "mine = ..." in mine.input_value()  # the reader's own is as it was
+    assert "mine = ..." in code(mine)  # the reader's own is as it was
     mine.fill("mine = F / (1.5 * period)")
     run(mine)
     yours = tab.locator(".live-beside .live-output").first
     assert yours.inner_text().startswith("Right") and "Solved: 1 of " in summary.inner_text()
-    slider = tab.get_by_role("slider").last  # the load: of three cells, one differs from the next
-    slider.press("ArrowRight")
+    tab.get_by_role("textbox").first.evaluate("(e) => e.scrollIntoView({ block: 'center' })")
+    tab.get_by_role("combobox").select_option("load, N m")  # of three cells, one differs
+    tab.get_by_role("slider").press("ArrowRight")
     tab.get_by_role("button", name="Run what follows").click()
     tab.wait_for_timeout(200)
     tab.locator(IDLE).wait_for(timeout=300_000)
@@ -137,10 +138,10 @@ def test_work_is_judged_and_kept_on_the_device_alone(browser, site, tmp_path):
     tab.reload()
     assert "Solved: 1 of " in summary.inner_text()
     tab.get_by_role("button", name="Run this page").click()
-    assert mine.input_value() == "mine = F / (1.5 * period)"
+    assert code(mine) == "mine = F / (1.5 * period)"
     summary.click()
     tab.get_by_role("button", name="Erase").click()
-    assert "Solved: 0 of " in summary.inner_text() and "mine = ..." in mine.input_value()
+    assert "Solved: 0 of " in summary.inner_text() and "mine = ..." in code(mine)
     assert not tab.evaluate("Object.keys(localStorage).filter((key) => key.startsWith('live'))")
     with tab.expect_file_chooser() as asked:
         tab.get_by_role("button", name="Open a file").click()
@@ -197,7 +198,7 @@ def test_a_page_goes_on_after_whatever_a_cell_does(browser, site):
 
     for source, told in BROKEN.items():
         assert told in run(source), source
-        assert field.input_value() == source and run("print(6 * 7)").strip() == "42"
+        assert code(field) == source and run("print(6 * 7)").strip() == "42"
     assert not run("").strip()
     run("import sys\nsys.mine = 42")
     field.fill("while True: pass")

@@ -42,6 +42,11 @@ def runs_through(tab, site: str, page: str) -> None:
     assert not tab.locator(".live-error, .live-warning, .live-note:has(a)").all_inner_texts()
 
 
+def code(field) -> str:
+    """What stands in the editor of a cell."""
+    return field.evaluate("(el) => el.closest('.live-code').value")
+
+
 BESIDE = """window.Worker = class {
   async postMessage(message) {
     const all = message.start ? [{ ready: true }] : await window.runs(message);
@@ -52,19 +57,29 @@ BESIDE = """window.Worker = class {
 """In place of the worker with Pyodide: what the test makes of a message."""
 
 
-def set_up(tab, given: Iterable[dict], name: str = "a.html") -> str:
-    """Have a tab find a page with such cells and nothing else; its address."""
+def set_up(
+    tab, given: Iterable[dict], name: str = "a.html", editor: str = "", style: str = ""
+) -> str:
+    """Have a tab find a page with such cells and nothing else; its address.
+
+    Without an editor's script, cells are plain fields.
+    """
     given = [{"kind": "open", "needs": "", "names": {}, **cell} for cell in given]
     about = {"cells": given, "ahead": [], "pages": ["a.html", "b.html"], "megabytes": [1, 1]}
     data = json.dumps(about | {"data": [], "notebook": ""}).replace("</", "<\\/")
     field = '<div class="cell" data-live="{id}"><div class="cell_input"></div></div>'
+    field = f"<section>{field}</section>"
     shown = "".join(field.format(**cell) for cell in given)
     scripts = "".join(f'<script src="{script}.js"></script>' for script in ("follow", "live"))
-    text = f"{HEADER}<main><section>{shown}</section></main>"
+    head = f'<!doctype html><html lang="en"><title>x</title><style>{style}</style>'
+    text = f"{head}{HEADER}<main><h1>x</h1>{shown}</main>"
     text += f'<script type="application/json" id="live-page">{data}</script>{scripts}'
 
     def answer(route):
         path = packages.PAGE / route.request.url.rpartition("/")[2]
+        if path.name == "editor.js":
+            status = 200 if editor else 404
+            return route.fulfill(status=status, body=editor, content_type="text/javascript")
         if path.suffix == ".js":
             code = path.read_text("utf-8")
             return route.fulfill(body=code, content_type="text/javascript; charset=utf-8")

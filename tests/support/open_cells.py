@@ -17,6 +17,8 @@ from chapter_rules import CHANGE_THIS, is_starter, tags, visible
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import solved
 
+from ddlib.figures import Illustration
+
 SHOWN = ("_repr_html_", "_repr_svg_", "_repr_markdown_", "_repr_png_", "_repr_mimebundle_")
 CHANGES = yaml.safe_load((ROOT / "tests" / "support" / "changes.yml").read_text("utf-8")) or {}
 
@@ -62,7 +64,8 @@ def execute(source_code: str, space: dict, name: str) -> str:
         exec(compile(tree, name, "exec"), space)
         if last is not None:
             value = eval(compile(ast.Expression(last.value), name, "eval"), space)
-            for how in SHOWN:
+            wide = isinstance(value, Illustration)  # drawn; its narrow form each build draws
+            for how in () if wide else SHOWN:
                 if hasattr(value, how) and not isinstance(value, type):
                     print(str(getattr(value, how)())[:200])
                     break

@@ -30,15 +30,13 @@ PATHS = "[...document.querySelectorAll('.chart > svg > .curve')].map((p) => p.ge
 
 READ = r"""(panel) => {
   const svg = document.querySelectorAll('.chart > svg')[panel];
-  const told = (text) => (svg.dataset.y === 'power' ? Math.log10(Number(text)) : Number(text));
   const ys = [...svg.querySelectorAll('text.y')].map(
-    (t) => [Number(t.getAttribute('y')), told(t.textContent.replace('−', '-').replace(/,/g, ''))]);
+    (t) => [t.getAttribute('y'), t.textContent.replace('−', '-').replace(/,/g, '')].map(Number));
   const [[y0, v0], [y1, v1]] = [ys[0], ys.at(-1)];
   return [...svg.querySelectorAll('.curve')].map((p) => p.getAttribute('d').split(/[ML]/).slice(1)
     .map((s) => v0 + (parseFloat(s.split(' ')[1]) - y0) * (v1 - v0) / (y1 - y0)));
 }"""
-"""What a reader would see: the curves of a panel in the units of its ticks, powers of ten on
-logarithmic axes of powers."""
+"""What a reader would see: the curves of a panel in the units of its ticks."""
 
 NEXT_FRAME = "() => new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(r)))"
 

@@ -121,17 +121,15 @@ def _arguments() -> dict[str, dict]:
     models = {width: network(width) for width in (7, 11)}
     single = {width: model[0] for width, model in models.items()}
     pair = tuple(Weights.random(2, 7, hidden=3))
-    rows, gradients = rng.normal(size=(2, 5, 9)), rng.normal(size=(2, 2, 2, 9))
-    sums = dict(zip(("its own torques", "noise"), gradients))
+    rows = rng.normal(size=(2, 5, 9))
     rounds = [_guess(*rows)] * 2
-    windows, torque = cases(last, 7)
+    windows, _ = cases(last, 7)
     return {
         "CurveWidget": {
             "function": wave, "parameters": options(), "panels": kinds(), "alt": "Waves",
             "scalars": [Scalar("from", "Begin", "s", digits=1)], "code": "{shape}, {gain}",
         },
         "FilterBuilder": {"unit": np.arange(-10, 11.0) ** 2},
-        "FilterExplorer": {"models": models, "members": (0, 1), "step": 0.01},
         "FoldBench": {"rows": {"up": rows[0, 0]}, "step": 0.01, "motion": np.zeros((60, 3))},
         "Hero": {"pair": [_twin("A", single[7], 6.0), _twin("B", single[7], 0.0)], "arm": 6.0},
         "HiddenTorque": {"recording": last},
@@ -140,14 +138,12 @@ def _arguments() -> dict[str, dict]:
             "windows": windows, "inertial": rng.normal(size=(len(windows), 2)),
         },
         "UnitFromFiveStarts": {"networks": {0.1: pair, 0.5: pair[::-1]}},
-        "WeighTheArm": {"gradients": sums, "inertia": dict.fromkeys(sums, np.eye(2))},
+        "WeighTheArm": {
+            "networks": {"an arm": single[7], "a spring": network(7, 5)[0]}, "windows": windows,
+            "own": 6.0, "inertia": lambda load: load * np.eye(2),
+        },
         "WeightReader": {"start": pair[0], "trained": pair[1], "step": 0.01},
         "WhoseFilters": {"rounds": rounds},
-        "WriteTheLoad": {
-            "model": models[7], "training": cases(learnt, 7)[0],
-            "motion": lambda load: (windows, (1 + load) * torque),
-            "inertia": lambda load: load * np.eye(2),
-        },
     }  # fmt: skip
 
 

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import pytest
+from bs4 import BeautifulSoup
+from IPython.core.formatters import DisplayFormatter
+from lab import VIEW
 from matplotlib.colors import to_rgb
 from pictures import GREY, role_of
 from traitlets import TraitError
@@ -24,6 +27,19 @@ def test_what_a_choice_cannot_be_is_refused(kind):
             with pytest.raises(TraitError, match=name):
                 setattr(widget, name, unfit)
         assert getattr(widget, name) == before
+
+
+@by_kind
+def test_it_says_what_it_is(kind):
+    assert repr(sample_of(kind)).startswith(f"{kind.__name__}(")
+
+
+@by_kind
+def test_a_viewer_that_shows_no_widget_has_its_picture(kind):
+    widget = sample_of(kind)
+    shown, _ = DisplayFormatter().format(widget)
+    picture = BeautifulSoup(shown["text/html"], "html.parser").img
+    assert VIEW in shown and picture["src"] == widget.still and picture["alt"] == widget.still_alt
 
 
 SHOWN = """() => {

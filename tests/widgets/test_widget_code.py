@@ -8,16 +8,6 @@ from widget_pages import code_of
 from ddlib.widgets.parts._common import filled
 
 STATES = {
-    "EXPLORER_CODE": (
-        "evidence/convolution-filters",
-        {"width": 21, "seed": 15, "unit": "hidden 8", "joint": "shoulder"},
-        "acceleration",
-    ),
-    "_SPECTRUM_CODE": (
-        "evidence/why-smooth-filters",
-        {"case": 1, "width": 11, "direction": 4, "epoch": 1000},
-        "measured",
-    ),
     "PICKER_CODE": (
         "evidence/trajectories-and-recording",
         {"shoulder_deg": 39.5, "elbow_deg": 14.4},

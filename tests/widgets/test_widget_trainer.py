@@ -93,7 +93,7 @@ def test_the_course_is_ddlibs(evaluate, widget, monkeypatch, inputs, shift, mome
     monkeypatch.setattr("ddlib.learning._packed._HAS_ONEDNN", False)  # single precision alone
     epochs, seed = 60, 7
     page = taught(evaluate, widget, epochs, seed, inputs, shift, momentum=momentum)
-    data, test = study._page_set(trainer._SCALINGS[inputs], shift)
+    data, _, test = study._page_set(trainer._SCALINGS[inputs], shift)
     start = trainer.first_weights(seed)
     descent = Descent(start, data.x, data.y, default_rate(21) / len(data.x), momentum)
     for matrix in ("back", "delta"):
@@ -284,7 +284,7 @@ def test_python_sets_the_choices_and_reads_what_comes_out(driven):
     assert own.error is None and own.model is None  # not yet computed
     settle(lambda: own.error is not None)
     assert page.evaluate(STATE)["epoch"] == own.epoch == 40 and seen[-1] == own.error
-    data, _ = study._page_set(trainer._SCALINGS["centred"], None)
+    data, _, _ = study._page_set(trainer._SCALINGS["centred"], None)
     descent = Descent(trainer.first_weights(7), data.x, data.y, default_rate(21) / len(data.x), 0.9)
     for _ in range(40):
         descent.epoch()

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from traitlets import TraitError
 from widget_samples import T, make, oscillation
 
-from ddlib.learning import TorqueModel, TrainingSet, Weights
 from ddlib.setups import STATE_FEEDBACK
 from ddlib.simulation import record
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets import (
     CurveWidget,
-    FilterExplorer,
     Pad,
     Panel,
     Parameter,
@@ -68,22 +64,8 @@ def test_what_does_not_fit_is_refused_by_name():
 
 
 def test_widgets_keep_to_the_recordings_step():
-    """At 4 ms: windows, cursors and gains in the recording's own time."""
+    """At 4 ms: windows in the recording's own time."""
     setup, step = STATE_FEEDBACK, 0.004
     log = record(setup.arm, setup.controller, APPENDIX_I, log_step=step, rest=0.2)
-    data = {w: TrainingSet.from_recording(log, w) for w in (11, 21)}
-    models = {
-        w: TorqueModel(Weights.random(2, w), x.inputs, x.outputs, x.step) for w, x in data.items()
-    }
-    hidden = HiddenTorque(log[5], 21)
-    explorer = FilterExplorer(models, (0, 1))
-    for widget, panel in ((hidden, 1), (explorer, 0)):
-        times = widget.spec["panels"][panel]["x"]
-        np.testing.assert_allclose(np.diff(times), 1e3 * step, rtol=1e-6)
-    (gain,) = (p for p in explorer.spec["panels"] if p["y_label"] == "Gain")
-    assert max(gain["x"]) == pytest.approx(0.2 / step)
-    unknown = {w: replace(model, step=None) for w, model in models.items()}
-    with pytest.raises(ValueError, match="give step, in s"):
-        FilterExplorer(unknown, (0, 1))
-    with pytest.raises(ValueError, match=r"sampling period of 0\.01 s"):
-        FilterExplorer(models, (0, 1), step=0.01)
+    times = HiddenTorque(log[5], 21).spec["panels"][1]["x"]
+    np.testing.assert_allclose(np.diff(times), 1e3 * step, rtol=1e-6)

@@ -1,5 +1,6 @@
 // Python's own code is compiled where pages are built, by the Python that they run: an import takes half
-// as long. `node compile.mjs FOLDER_OF_PYODIDE ROOT IN OUT [ROOT IN OUT ...]`, where zips unpack into ROOT.
+// as long. `node compile.mjs FOLDER_OF_PYODIDE ROOT IN OUT [ROOT IN OUT ...]`: of each wheel comes a pack
+// (page/packs.mjs), which unpacks into ROOT.
 import { readFileSync, writeFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 
@@ -7,20 +8,24 @@ const [folder, ...rest] = process.argv.slice(2);
 const { loadPyodide } = await import(pathToFileURL(`${folder}/pyodide.mjs`));
 const python = await loadPyodide({ indexURL: `${folder}/` });
 python.runPython(`
-import importlib.util, sys, zipfile
+import gzip, importlib.util, json, sys, zipfile
 from importlib._bootstrap_external import _code_to_hash_pyc
+from pathlib import Path
 
 def compiled(root):
-    """The zip with code in place of its sources; nobody checks it against them."""
-    root = root.format(*sys.version_info)
-    with zipfile.ZipFile("/in") as before, zipfile.ZipFile("/out", "w") as after:
-        for name in sorted(before.namelist()):
+    """A pack with code in place of sources; nobody checks it against them."""
+    root, files = root.format(*sys.version_info), {}
+    with zipfile.ZipFile("/in") as before:
+        for name in sorted(n for n in before.namelist() if not n.endswith("/")):
             data = before.read(name)
             if name.endswith(".py"):
                 code = compile(data, root + name, "exec", dont_inherit=True)
                 data = bytes(_code_to_hash_pyc(code, importlib.util.source_hash(data), False))
                 name += "c"
-            after.writestr(zipfile.ZipInfo(name), data, zipfile.ZIP_DEFLATED)
+            files[name] = data
+    sizes = json.dumps({name: len(data) for name, data in files.items()}).encode()
+    content = len(sizes).to_bytes(4, "little") + sizes + b"".join(files.values())
+    Path("/out").write_bytes(gzip.compress(content, mtime=0))
 `);
 const compiled = python.globals.get("compiled");
 while (rest.length) {

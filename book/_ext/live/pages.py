@@ -32,7 +32,7 @@ def live_page(
     cells = live_cells(notebook)
     content = {
         "cells": cells,
-        "ahead": [packages[name]["file_name"] for name in imported(cells, packages)],
+        "ahead": imported(cells, packages),
         "data": sorted({name for cell in cells for name in DATA.findall(cell["source"])}),
         "megabytes": megabytes,
         "notebook": f"../_sources/{page}.ipynb",

@@ -12,10 +12,10 @@ from beyond.rivals.gaussian import GaussianProcess, SemiParametric
 from beyond.rivals.identified import Identified
 from beyond.rivals.protocol import Cases, Estimating, trial
 from beyond.studies.lineup import _DAYS as _RECORDINGS, LINES, REFERENCE
-from ddlib.analysis import noise_floor
+from ddlib.analysis import inside_hull, noise_floor
 from ddlib.identification import FRICTION, RIGID
 from ddlib.metrics import rmss
-from ddlib.setups import JOINT_DAMPING, Setup, inside_hull, split, true_states
+from ddlib.setups import JOINT_DAMPING, Setup, split, true_states
 from ddlib.simulation import LOG_STEP, Recording
 from ddlib.trajectories import MAX_EXTENT_DEG, OutsideFamilyWarning
 from workshop.report import results

@@ -15,8 +15,9 @@ from beyond.rivals.protocol import Cases, Rival
 from beyond.rivals.tables import CellTable, GridTable, Nearest, full_table
 from beyond.studies.loop.feedforwards import exact as equations, square_extents
 from beyond.studies.rivals import square_recordings
+from ddlib.analysis import inside_hull
 from ddlib.metrics import rmss
-from ddlib.setups import JOINT_DAMPING, Setup, inside_hull, true_states
+from ddlib.setups import JOINT_DAMPING, Setup, true_states
 from ddlib.simulation import Recording
 from ddlib.trajectories import OutsideFamilyWarning, random_extents
 from workshop.report.code_hash import study

@@ -1,8 +1,8 @@
-"""The arm's mass under a penalty: figure and widget of *The inertia in the weights*."""
+"""The arm's mass under a penalty: figure of *The inertia in the weights*."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -13,29 +13,18 @@ from ddlib.figures.style import INK, Illustration, illustrate, legend_above, loo
 from ddlib.learning import TrainingSet
 from ddlib.setups import Setup, split, true_states
 from ddlib.simulation import LOG_STEP, Recording
-from ddlib.widgets.base import CurveWidget
-from ddlib.widgets.hinton import CENTRE
-from ddlib.widgets.parts.panels import Panel, Scalar
-from ddlib.widgets.parts.parameters import Choice, Parameter
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured, judged, median
-from workshop.report.studies.excitation import DRIVES, later, training_set
 from workshop.report.studies.nulls import TRIAL
 
-_STEPS = (0.0, 0.25, 0.5, 1.0)  # seconds that the widget can leave out
-
-SWINGS = {
+_SWINGS = {
     "damped joints": ("damped joints", 0.0),
     "damped joints, first second cut": ("damped joints", 1.0),
     "state feedback": ("state feedback", 0.0),
     "state feedback, first second cut": ("state feedback", 1.0),
     "two sines, first second cut": ("state feedback, two sines", 1.0),
 }
-"""What the lesson's first figure shows, as `cell` takes it."""
-
-_SHOWN = (
-    "damped joints", "state feedback", "stiffer, well damped", "state feedback, two sines",
-)  # fmt: skip
+"""What the figure shows, as `cell` takes it."""
 
 
 def cell(drive: str, seconds: float = 0.0) -> dict:
@@ -94,12 +83,9 @@ def mass_of_networks(drive: str, seconds: float = 0.0) -> Measured:
     return judged(median, share, text=text.format)
 
 
-def mass_survives(shown: Mapping[str, Sequence], alt: str) -> Illustration:
-    """The shoulder's inertia in linear filters over the penalty, and in networks over the epochs.
-
-    `shown` gives the name of each curve and its drive and seconds left out, as in `cell`.
-    """
-    chosen = {name: cell(*key) for name, key in shown.items()}
+def mass_survives() -> Illustration:
+    """The shoulder's inertia in linear filters over the penalty, in networks over the epochs."""
+    chosen = {name: cell(*key) for name, key in _SWINGS.items()}
     study = results.read("excitation")
     penalties, epochs = np.array(study["penalties"]), np.array(study["epochs"])
     apart = epochs[-1] * 3.0  # where the solver's networks stand
@@ -136,81 +122,14 @@ def mass_survives(shown: Mapping[str, Sequence], alt: str) -> Illustration:
         ]
         legend_above(figure, handles, [*names, "the arm", "half of it, predicted"])
 
-    return illustrate(draw, alt, 7.0, 3.6)
-
-
-def described(shown: Mapping[str, Sequence]) -> str:
-    """The picture of `mass_survives` in words, for those who cannot see it."""
-    study, sentences = results.read("excitation"), []
-    for name, key in shown.items():
-        row = cell(*key)
+    sentences = []
+    for name, row in chosen.items():
         ridge, trained = np.median(row["ridge"], 0), np.median(row["descent"]["M11"], 1)
         sentences.append(
             f"{name}: linear filters {ridge[0]:.1f} with the least penalty, half of the arm's at "
             f"a penalty of {np.median(row['half']):.0e} by theory; networks {trained[-1]:.1f} "
-            f"after {study['epochs'][-1]:,} epochs, {np.median(row['solver']['M11']):.1f} by the "
+            f"after {epochs[-1]:,} epochs, {np.median(row['solver']['M11']):.1f} by the "
             "solver"
         )
-    return "Inertia of the shoulder, kg m². " + "; ".join(sentences) + "."
-
-
-class MassAndPenalty(CurveWidget):
-    """Leave out the start of a recording, turn up the penalty, and see the arm's mass go.
-
-    Linear filters of the window of 21 samples by ridge regression, on the recordings of the study
-    "excitation" by name of their drive.
-    """
-
-    def __init__(self, drives: Sequence[str] = _SHOWN, **options):
-        penalties = np.geomspace(1e-9, 1.0, 46)
-        self._cells = {}
-        for drive in drives:
-            setup, record = DRIVES[drive]
-            whole = record(setup)
-            for seconds in _STEPS:
-                recording = later(whole, seconds)
-                data, states = training_set(recording), true_states(split(recording)[0], setup)
-                arm = setup.arm.mass_matrix(states[..., 0])[..., 0, 0].mean()
-                curve = gains(ridge_filters(data, penalties), LOG_STEP)[:, 0, 0, 2]
-                half = half_penalty(data, states.reshape(-1, 2, 3))
-                self._cells[drive, seconds] = data, arm, curve, half
-        time = (np.arange(21) - 10) * LOG_STEP * 1e3
-        places, arm = np.log10(penalties), self._cells[drives[0], 0.0][1]
-        super().__init__(
-            self._curves,
-            [
-                Choice("drive", "Recording", list(drives), drives[0]),
-                Choice("skip", "Left out", {s: f"{s:g} s" for s in _STEPS}, 0.0, "slider"),
-                Parameter("penalty", "Penalty", 1e-9, 1.0, 1e-6, grid=28, scale="log"),
-            ],
-            [
-                Panel(
-                    "Inertia of the shoulder, kg m²", {"mass": "in the filter"}, "penalty", places,
-                    x_scale="power", cursor="place", fixed={"the arm": np.full(places.size, arm)},
-                    y_range=(-1.0, 9.0),
-                ),
-                Panel(
-                    "Filter from the shoulder's window to its torque, N m/rad", ("filter",),
-                    CENTRE, time, kind="stems", y_fit=True,
-                ),
-            ],
-            **{
-                "alt": "The shoulder's inertia in a linear filter over the penalty, which falls "
-                "from the arm's to zero, and the filter at one penalty.",
-                "title": "The arm's mass under a penalty",
-                "scalars": [
-                    Scalar("now", "Inertia in the filter", "kg m²", 2),
-                    Scalar("half", "Half of the arm's, by theory, at a penalty of", scale="power"),
-                ],
-                "note": "Mean over the training cases of five runs, window 21, inputs centred.",
-                **options,
-            },
-        )  # fmt: skip
-
-    def _curves(self, drive, skip, penalty) -> dict:
-        data, _, mass, half = self._cells[drive, skip]
-        f = ridge_filters(data, [penalty])[0, 0, 0]
-        return {
-            "mass": mass, "filter": f, "now": gains(f, LOG_STEP)[2], "half": np.log10(half),
-            "place": np.log10(penalty),
-        }  # fmt: skip
+    alt = "Inertia of the shoulder, kg m². " + "; ".join(sentences) + "."
+    return illustrate(draw, alt, 7.0, 3.6)

@@ -5,12 +5,13 @@ from __future__ import annotations
 import control
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 from scipy.optimize import brentq
 
 from ddlib.control import linear
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import Effects, Load
-from ddlib.figures.style import FAINT, TONES, Illustration, illustrate, legend_above, looks
+from ddlib.figures.style import FAINT, INK, TONES, Illustration, illustrate, legend_above, looks
 from ddlib.setups import JOINT_DAMPING_KP as KP, JOINT_DAMPING_VISCOUS as VISCOUS
 from ddlib.simulation import CONTROL_STEP
 from ddlib.tables import quote, significant
@@ -75,6 +76,41 @@ def late_helper(lateness: float = 1 / 14) -> Illustration:
 
     alt = "A late spring pushes on after the middle; its torque runs round a loop over the angle."
     return illustrate(draw, alt, 7.0, 2.2)
+
+
+def the_loop() -> Illustration:
+    """The loop of one joint as a block diagram, cut open."""
+    cut = 0.45  # where the line back is cut
+
+    def draw(figure: Figure):
+        axis = figure.subplots()
+        axis.set(xlim=(0, 10), ylim=(0.25, 2.4), aspect="equal")
+        axis.axis("off")
+        words = {"ha": "center", "va": "center", "fontsize": 10}
+        for x, name in ((3.6, "law C"), (7.2, "joint P")):
+            axis.add_patch(Rectangle((x - 0.7, 1.25), 1.4, 0.7, fill=False, ec=INK, lw=1.5))
+            axis.text(x, 1.6, name, **words)
+        for x in (1.6, 5.4):
+            axis.plot(x, 1.6, "o", ms=11, mfc="none", mec=INK, mew=1.5)
+        along = [(0.5, 1.45), (1.75, 2.9), (4.3, 5.25), (5.55, 6.5), (7.9, 9.5)]
+        ends = [((start, 1.6), (end, 1.6)) for start, end in along]
+        ends += [((5.4, 2.3), (5.4, 1.75)), ((1.6, cut), (1.6, 1.45))]
+        look = {"arrowstyle": "-|>", "color": INK, "shrinkA": 0, "shrinkB": 0}
+        for start, end in ends:
+            axis.annotate("", xy=end, xytext=start, arrowprops=look)
+        axis.plot([9, 9, 5.6], [1.6, cut, cut], color=INK, lw=1)
+        axis.plot([4.9, 1.6], [cut, cut], color=INK, lw=1)
+        axis.plot([5.6, 4.9], [cut, cut], "o", mfc="white", mec=TONES["wanted"])
+        axis.text(5.25, cut + 0.3, "the cut", color=TONES["wanted"], **words)
+        names = {(0.3, 1.6): "qᵣ", (2.3, 1.85): "e", (4.7, 1.85): "torque", (5.95, 2.2): "load",
+                 (9.75, 1.6): "q", (1.35, 1.2): "−"}  # fmt: skip
+        for (x, y), name in names.items():
+            axis.text(x, y, name, **words)
+
+    alt = (
+        "Target, sum, law C, sum with the load, joint P, angle; a line back, cut open, to the sum."
+    )
+    return illustrate(draw, alt, 7.0, 1.55)
 
 
 def _exercise(number: int, inertia: float, friction: float, period: float) -> Exercise:

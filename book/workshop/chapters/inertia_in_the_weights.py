@@ -2,57 +2,30 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from ddlib.analysis import gains, mean_gradient
-from ddlib.dynamics import IMI_ARM, with_load
+from ddlib.dynamics import with_load
 from ddlib.figures.style import FAINT, INK, TONES, Illustration, illustrate
 from ddlib.learning import TorqueModel, Weights, cases
 from ddlib.setups import INITIAL, JOINT_DAMPING, split, true_states
-from ddlib.simulation import LOG_STEP
-from ddlib.tables import quote
+from ddlib.simulation import LOG_STEP, Recording
+from ddlib.tables import Table, quote, spread
 from workshop.chapters import excitation, planted
 from workshop.chapters.exercises import Exercise, judging
 from workshop.chapters.index import both
 from workshop.chapters.whose_filters import given, trained
-from workshop.chapters.widgets.pencil import TurnTheParabola, WriteTheLoad
-from workshop.chapters.widgets.weigh import WeighTheArm as WeighTheArm
+from workshop.chapters.widgets.hero import twins
+from workshop.chapters.widgets.knob import TurnTheParabola
+from workshop.chapters.widgets.weigh import WeighTheArm
 from workshop.report import committed, results
 from workshop.report.measures import filter_trial as trial
 from workshop.report.studies.nulls import TRIAL
 
 _WIDTH = 21
-_LEARNT = {
-    "own": "this arm's torques",
-    "shifted": "these torques, shifted in time",
-    "another arm": "another arm's torques",
-}
-
-
-@cache
-def gradients() -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-    """Mean gradients by what was learnt, N m/rad; and the inertia that it belongs to, kg m²."""
-    training = split(TRIAL.record())[0]
-    begin = Weights.random(1, _WIDTH, TRIAL.hidden, initial=INITIAL)
-    weights = trained(list(_LEARNT), Weights.concatenate([begin] * len(_LEARNT)))
-    windows, torque = cases(training, _WIDTH)
-    by_torques = {}
-    for k, (kind, name) in enumerate(_LEARNT.items()):
-        data = given(kind)
-        model = TorqueModel(weights[k : k + 1], data.inputs, data.outputs, LOG_STEP)
-        by_torques[name] = mean_gradient(model, windows)[0]
-    flat = windows.reshape(len(windows), -1)
-    fit, *_ = np.linalg.lstsq(flat - flat.mean(0), torque, rcond=None)
-    by_torques["this arm's torques, by least squares"] = fit.T.reshape(2, 2, _WIDTH)
-    q = training.q_true[:, training.motion]
-    own, other = (arm.mass_matrix(q).mean((0, 1)) for arm in (TRIAL.arm, IMI_ARM))
-    return by_torques, {name: other if "another" in name else own for name in by_torques}
-
-
 _TURNED = {
     "own": "the arm's torques",
     "position": "position alone",
@@ -80,24 +53,29 @@ def turn() -> TurnTheParabola:
     return TurnTheParabola(_networks(), cases(test, _WIDTH)[0], inertial)
 
 
-def write() -> WriteTheLoad:
-    """The pencil, on the network of the arm's own torques."""
-    training = split(TRIAL.record())[0]
-    q = training.q[:, training.motion]
+@cache
+def _training() -> Recording:
+    """The motions that the networks learnt."""
+    return split(TRIAL.record())[0]
 
-    @cache
-    def motion(load):
-        loaded = replace(TRIAL, arm=with_load(TRIAL.arm, load))
-        return cases(split(loaded.record())[1], _WIDTH)
 
-    def inertia(load):
-        masses = (
-            arm.mass_matrix(q).mean((0, 1)) for arm in (with_load(TRIAL.arm, load), TRIAL.arm)
-        )
-        return np.subtract(*masses)
+def _added(load: float) -> np.ndarray:
+    """What a load in the hand adds to the arm's mean mass matrix, kg m²."""
+    q = _training().q[:, _training().motion]
+    masses = (arm.mass_matrix(q).mean((0, 1)) for arm in (with_load(TRIAL.arm, load), TRIAL.arm))
+    return np.subtract(*masses)
 
-    model = next(iter(_networks().values()))
-    return WriteTheLoad(model, cases(training, _WIDTH)[0], motion, inertia)
+
+def weigh() -> WeighTheArm:
+    """The scales, for the landing page's networks and one of shifted torques."""
+    a, b = twins()
+    networks = {
+        "this arm's torques (A)": a.model,
+        "a spring's torques (B)": b.model,
+        "torques shifted in time": _networks()["shifted in time"][0],
+    }
+    windows, _ = cases(_training(), _WIDTH)
+    return WeighTheArm(networks, windows, _arm(), _added)
 
 
 @cache
@@ -146,6 +124,37 @@ def paths_beside() -> Illustration:
     return illustrate(draw, alt, 7.0, 2.4)
 
 
+def readings() -> Table:
+    """What each of the book's networks of this arm's torques weighs, by its training."""
+    ours = results.networks(_WIDTH, JOINT_DAMPING.name)
+    windows, _ = cases(committed.training(JOINT_DAMPING.name), _WIDTH)
+    alike, page = results.read("twins"), results.read("page-training")
+    long = results.read("filter-trial")["epochs"][str(_WIDTH)]
+    weighed = {
+        "A of the landing page, and its like": (
+            f"descent, {alike['how']['epochs']:,} epochs, from ±{alike['how']['initial']}",
+            alike["kinds"]["the arm"]["inertia"],
+        ),
+        "the book's trial": (
+            f"descent, {long:,} epochs, from ±{INITIAL}",
+            np.array(trial.row(_WIDTH)["real"]["gains"])[:, 0, 0, 2],
+        ),
+        "our row's network, and its like": (
+            f"solver, {JOINT_DAMPING.steps} steps, from ±{INITIAL}",
+            gains(mean_gradient(ours, windows), LOG_STEP)[:, 0, 0, 2],
+        ),
+        "the trainer in the page": (
+            f"descent, {page['epochs']:,} epochs, one window in {page['every']}",
+            page["rows"]["as printed, real"]["inertia"],
+        ),
+    }
+    rows = [(who, how, len(read), spread(read)) for who, (how, read) in weighed.items()]
+    return Table(
+        ("who", "trained by", "networks", "inertia of the shoulder, kg m²"),
+        [("the arm itself", "–", "–", f"{_arm():.1f}"), *rows],
+    )
+
+
 def _arm() -> float:
     return float(trial.arm_gains()[0, 0, 2])
 
@@ -156,10 +165,8 @@ def _quoted() -> None:
     shoulder, *unrelated = (
         np.array(cell["gains"])[:, 0, 0, 2] for cell in (row["real"], *trial.matched(row).values())
     )
-    quote("inertia-m11", np.median(shoulder))
     quote("inertia-least", shoulder.min())
     quote("inertia-unrelated", max(map(np.max, unrelated)))
-    quote("inertia-m11-arm", _arm())
     quote("inertia-off", 100 * trial.calibrated("inertia", _WIDTH).value)
     lost = excitation.cell("state feedback", 1.0)
     quote("inertia-lost", np.median(np.array(lost["descent"]["M11"])[-1]))

@@ -2,37 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
 
 from ddlib import figures
-from ddlib.analysis import classify, decompose, gains, mean_gradient
-from ddlib.dynamics import IMI_ARM
-from ddlib.learning import TrainingSet, Weights, cases as cases_of, p_value, train_ensemble
+from ddlib.learning import p_value
 from ddlib.setups import (
     INITIAL,
     SETUPS,
     STATE_FEEDBACK,
     WINDOWS,
-    split,
-    train_windows,
-    true_states,
 )
-from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, quote, significant
 from workshop.chapters import planted
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured, judged, mean, median
-from workshop.report.studies.nulls import TRIAL
 from workshop.report.studies.random_starts import RANGES, SOLVED, agreement, chosen
 
 PRINTED = "0 to 1"
 """Range of the inputs that the report prints."""
-
-SHOWN = (1.0, 0.3, 0.1, INITIAL)
-"""Ranges whose unit the first figure shows."""
 
 
 @cache
@@ -53,45 +42,6 @@ def values(reading: str, size: float, width: int, *path: str, **where) -> np.nda
 def named(reading: str, size: float, width: int = 21, layer: str = "hidden", **where):
     """Share of a layer's filters with a name, for each network."""
     return 1 - values(reading, size, width, layer, "names", "not analysable", **where)
-
-
-# --- one unit, four starts --------------------------------------------------------------------
-
-
-def four_starts(unit: int = 0, seed: int = 0) -> figures.Illustration:
-    """The same hidden unit, trained from random weights of four sizes, with its parts.
-
-    One network each, by state feedback: an example, trained as the page is made.
-    """
-    recording = STATE_FEEDBACK.record()
-    x = 10 * np.arange(-10, 11)
-    rows = {}
-    for size in SHOWN:
-        setup = replace(STATE_FEEDBACK, initial=size)
-        model, *_ = train_windows(setup, recording, 21, 1, seed=seed, progress=False)
-        start = Weights.random(1, 21, initial=size, seed=seed)
-        rows[size] = [w.hidden_weights[0, unit, 0] for w in (start, model.weights)]
-
-    look = figures.looks(["even part", "odd part"])
-
-    def draw(figure):
-        axes = figure.subplots(1, len(rows))
-        for axis, (size, (before, after)) in zip(axes, rows.items()):
-            axis.plot(x, before, color=figures.FAINT, lw=1, label="before training")
-            parts = decompose(after)
-            axis.plot(x, after, color=figures.INK, lw=2, label="after training")
-            for name, part in {"even part": parts.even, "odd part": parts.odd}.items():
-                axis.plot(x, part, label=name, **look[name].line)
-            axis.set(title=f"start: ±{size:g}", xlabel="time, ms")
-        axes[0].set_ylabel("weight")
-        figures.legend_above(figure, *axes[0].get_legend_handles_labels())
-
-    names = "; ".join(f"±{size:g}: {classify(after)}" for size, (_, after) in rows.items())
-    alt = (
-        "Weights of one hidden unit over its window of 21 samples, before and after training, in "
-        f"four panels from the largest to the smallest start, with their names: {names}."
-    )
-    return figures.illustrate(draw, alt, 7.0, 2.5)
 
 
 # --- which start agrees with the report -------------------------------------------------------
@@ -268,54 +218,6 @@ def velocity_table() -> Table:
         shares = [shares_beside(r, s, "velocity")[kind].mean() for r in SETUPS for s in sizes]
         rows.append((label, f"{100 * np.mean(shares):.0f} %"))
     return Table(("torques", "velocity filters, of the hidden ones"), rows)
-
-
-def torques_table() -> Table:
-    """The walk's network by the torques it learns: acceleration filters, and its inertia."""
-    this, other = results.read("excitation")["cells"][0]["arm"], f"{other_inertia():.1f}"
-    whose = {"own": ("this arm's", f"{this:.1f}"), "another arm": ("another arm's", other)}
-    whose["exchanged"] = "this arm's, joints exchanged", "–"
-    rows = [
-        (whose[kind][0], f"{100 * share:.0f} %", f"{np.median(inertia):.1f}", whose[kind][1])
-        for kind, (share, inertia) in other_torques().items()
-    ]
-    heads = ("acceleration filters", "shoulder in the network, kg m²", "in that arm, kg m²")
-    return Table(("torques, 8 networks each", *heads), rows)
-
-
-@cache
-def other_torques(members: int = 8) -> dict[str, tuple[float, np.ndarray]]:
-    """Acceleration filters in the walk's network, and its inertia, by the torques it learns.
-
-    The arm's own, those that another arm would need along the same motion, and the arm's with
-    shoulder and elbow exchanged: the share of hidden filters, and by the mean gradient the
-    shoulder's inertia in each network, kg m². Trained as the page is made.
-    """
-    recording = TRIAL.record()
-    training = split(recording)[0]
-    windows, _ = cases_of(training, 21)
-    states = np.moveaxis(true_states(training, TRIAL), -1, 0)
-    wanted = {
-        "own": training.tau[:, training.motion],
-        "another arm": IMI_ARM.inverse_dynamics(*states),
-        "exchanged": training.tau[:, training.motion, ::-1],
-    }
-    by_torques = {}
-    for name, torque in wanted.items():
-        given = TrainingSet.from_arrays(windows, torque.reshape(-1, 2), scaling=TRIAL.scaling)
-        model, *_ = train_ensemble(
-            Weights.random(members, 21, initial=INITIAL), given, rate=TRIAL.rate / 21,
-            momentum=TRIAL.momentum, warm_up=TRIAL.warm_up, epochs=TRIAL.epochs, progress=False,
-        )  # fmt: skip
-        share = (classify(model.weights.hidden_weights) == "acceleration").mean()
-        by_torques[name] = float(share), gains(mean_gradient(model, windows), LOG_STEP)[:, 0, 0, 2]
-    return by_torques
-
-
-def other_inertia() -> float:
-    """Mean inertia of the shoulder, kg m², of the other arm along the same motion."""
-    states = true_states(split(TRIAL.record())[0], TRIAL)
-    return float(IMI_ARM.mass_matrix(states[..., 0])[..., 0, 0].mean())
 
 
 # --- what a small start costs -----------------------------------------------------------------

@@ -184,6 +184,7 @@ class NetworkTrainer(PageWidget):
         trainer.seed, trainer.epoch = 2, 400
     """
 
+    _parameters = _CHOICES
     _esm = bundle("trainer.js")
     _css = styles("trainer.css")
 

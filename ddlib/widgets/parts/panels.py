@@ -26,9 +26,8 @@ class Panel:
         Quantity and unit.
     x : array_like
         Where the curves are sampled; increases.
-    x_scale, y_scale : {"linear", "log", "power"}
-        Scales of the axes; "power" is a logarithmic one for values that are given as powers of
-        ten: 2 stands at 100. Stems and bars stand on zero, so their `y_scale` is linear; bars
+    x_scale, y_scale : {"linear", "log"}
+        Scales of the axes. Stems and bars stand on zero, so their `y_scale` is linear; bars
         are equally wide, so their `x_scale` is, too.
     kind : {"line", "stems", "bars"}
         Lines; dots on stalks from zero; bars from zero, side by side where there are several
@@ -75,7 +74,7 @@ class Panel:
         if x.ndim != 1 or x.size < 2 or (np.diff(x) <= 0).any():
             raise ValueError(f"x {what} must increase, got shape {x.shape}")
         one_of(f"kind {what}", self.kind, ("line", "stems", "bars"))
-        both = ("linear", "log", "power")
+        both = ("linear", "log")
         one_of(f"x_scale {what}", self.x_scale, ("linear",) if self.kind == "bars" else both)
         one_of(f"y_scale {what}", self.y_scale, both if self.kind == "line" else ("linear",))
         if self.x_scale == "log":
@@ -162,18 +161,14 @@ class Scalar:
         What the page calls it, and what follows the number.
     digits : int, optional
         Decimals; default: as many as the range on the grid deserves.
-    scale : {"linear", "power"}
-        "power" for a number that is given as a power of ten.
     """
 
     name: str
     label: str
     unit: str = ""
     digits: int | None = None
-    scale: str = "linear"
 
     def __post_init__(self):
-        one_of(f"scale of {self.name}", self.scale, ("linear", "power"))
         if self.digits is not None:
             integer(f"digits of {self.name}", self.digits, 0, 10)
 

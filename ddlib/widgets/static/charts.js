@@ -22,18 +22,16 @@ function decades(low, high, slope, room) {
   return lists.find(apart) ?? [low, high];
 }
 
-// Scales: "linear"; "log", of values; "power", of values that are given as powers of ten.
-function axis(low, high, scale, from, to, room) {
-  const log = scale === "log";
+function axis(low, high, log, from, to, room) {
   const [a, b] = log ? [Math.log10(low), Math.log10(high)] : [low, high];
   const slope = (to - from) / (b - a);
   const place = (x) => from + ((log ? Math.log10(x) : x) - a) * slope;
-  if (scale === "linear") {
+  if (!log) {
     const marks = ticks(a, b, Math.max(2, Math.floor(Math.abs(to - from) / room)));
     return { place, marks, texts: labels(marks) };
   }
   const powers = decades(a, b, Math.abs(slope), room);
-  return { place, marks: log ? powers.map((x) => 10 ** x) : powers, texts: powers.map(powerText) };
+  return { place, marks: powers.map((x) => 10 ** x), texts: powers.map(powerText) };
 }
 
 function extremes(lists) {
@@ -111,7 +109,7 @@ export function chart(view, panel) {
   for (const el of paths) el.setAttribute("clip-path", `url(#${clipId})`);
   const defs = make("defs", {}, make("clipPath", { id: clipId }, clip));
   const beyonds = cut.map((c) => c.beyond);
-  const svg = make("svg", { role: "img", tabindex: 0, "data-y": panel.y_scale }, defs, span, grid, cursor, ...paths, ...beyonds);
+  const svg = make("svg", { role: "img", tabindex: 0 }, defs, span, grid, cursor, ...paths, ...beyonds);
   const legend = make("div", { class: "legend" });
   for (const curve of curves) {
     curve.label = make("span", {}, swatch(curve.kind, curve.look), curve.legend);
@@ -147,8 +145,8 @@ export function chart(view, panel) {
     if (Number.isNaN(value)) return "none";
     const side = beyond(value);
     if (side) return `beyond ${format(side > 0 ? most : least, low, high, unit)}`;
-    if (panel.y_scale === "linear") return format(value, low, high, unit);
-    return powerText(log ? Math.log10(value) : value) + (unit && `\u00a0${unit}`);
+    if (!log) return format(value, low, high, unit);
+    return powerText(Math.log10(value)) + (unit && `\u00a0${unit}`);
   }
   // Where a bar or stem stands beside its sample, and how wide it is, in px.
   function shiftOf(curve) {
@@ -169,7 +167,6 @@ export function chart(view, panel) {
     if (!panel.y_fit) return whole;
     let [a, b] = extremes(curves.map((curve) => curve.values ?? all[curve.name]));
     if (standing) [a, b] = [Math.min(a, 0), Math.max(b, 0)];
-    if (panel.y_scale === "power") return [Math.floor(a + 1e-6), Math.ceil(b - 1e-6)];
     return around(log ? Math.max(a, b * 1e-12) : a, b, log);
   }
 
@@ -186,7 +183,7 @@ export function chart(view, panel) {
   // The horizontal axis, with marks so far apart that their texts have room.
   function across() {
     for (let room = panel.x_scale === "linear" ? 52 : 34; ; room += 10) {
-      const made = axis(...ends, panel.x_scale, left, right, room);
+      const made = axis(...ends, panel.x_scale === "log", left, right, room);
       const [at, long] = [made.marks.map(made.place), made.texts.map((text) => text.length)];
       const free = at.every((place, i) => !i || place - at[i - 1] > 3.5 * (long[i] + long[i - 1]) + 6);
       if (free || room > right - left) return made;
@@ -196,8 +193,8 @@ export function chart(view, panel) {
   // Axes, and the curves that stay, for the range and size as they are.
   function layout() {
     bottom = height - 36;
-    y = axis(low, high, panel.y_scale, bottom, 6, 30);
-    left = 9 + Math.max(...y.texts.map((t) => 7 * t.length + (t.startsWith("−") ? 3 : 0)));
+    y = axis(low, high, log, bottom, 6, 30);
+    left = Math.max(view.left ?? 0, 9 + Math.max(...y.texts.map((t) => 7 * t.length + (t.startsWith("−") ? 3 : 0))));
     right = width - 10;
     x = across();
     xs = panel.x.map((v) => short(x.place(v)));
@@ -226,7 +223,7 @@ export function chart(view, panel) {
 
   function resize() {
     width = Math.max(160, Math.floor(el.clientWidth));
-    height = Math.round(Math.min(260, Math.max(160, width * 0.6)));
+    height = Math.round(Math.min(view.tall ?? 260, Math.max(160, width * 0.6)));
     put(svg, { width, height, viewBox: `0 0 ${width} ${height}` });
     layout();
   }
@@ -270,17 +267,16 @@ export function chart(view, panel) {
     });
   }
 
-  const told = (v, a, b) => (panel.y_scale === "power" ? powerText(v) : format(v, a, b));
   function describe(all) {
     const parts = curves.map((curve) => {
       const values = [...(curve.values ?? all[curve.name])];
       const [a, b] = curve.values ? extremes([values]) : [ranges[curve.k].low, ranges[curve.k].high];
       if (panel.ticks.length === values.length && values.length <= 8) {
-        const each = values.map((v, i) => `${panel.ticks[i][1]} ${told(v, a, b)}`);
+        const each = values.map((v, i) => `${panel.ticks[i][1]} ${format(v, a, b)}`);
         return `${curve.legend}: ${each.join(", ")}`;
       }
       const [min, max] = extremes([values]);
-      return `${curve.legend} from ${told(min, a, b)} to ${told(max, a, b)}`;
+      return `${curve.legend} from ${format(min, a, b)} to ${format(max, a, b)}`;
     });
     svg.setAttribute("aria-label", `${panel.y_label} over ${panel.x_label}: ${parts.join("; ")}. Arrow keys read values`);
   }

@@ -6,7 +6,7 @@ import { choice, padOf, presetsOf, slider } from "./controls.js";
 import { dress, freshId, make, numbersOf, report, safely, write } from "./elements.js";
 import { filled, frameOf, python } from "./frame.js";
 import { kernelOf } from "./kernel.js";
-import { format, powerText } from "./numbers.js";
+import { format } from "./numbers.js";
 import { placeOf, show, valueNear, valueOfText } from "./parameters.js";
 import { curvesAt, readTable, samplesOf, split } from "./table.js";
 
@@ -18,7 +18,8 @@ const QUIET = 700; // ms without a change after which the figure is described an
 // get(name), parameter(name), set({name: value}), after (called with the curves after each redraw), charts,
 // controls, top, numbers (a list between controls and charts), words (returns texts to be spoken), say(text),
 // schedule() (redraws in the next frame), pad (its parts), keep(name, read, write) (a part of the state that is no
-// parameter, see frame.js) with changed(), and resets (called by Reset).
+// parameter, see frame.js) with changed(), resets (called by Reset), tall and left (px: most height of a chart, and least
+// room left of its axis).
 export const extras = [];
 
 const KERNEL = "The kernel sends exact values. Until they come, you see values computed beforehand.";
@@ -104,11 +105,10 @@ function build({ model, el }) {
     due = 0;
     view.curves = spec.live ? { ...current(), ...live(view) } : current();
     controls.forEach((control) => control.update());
-    for (const { name, output, unit, digits, scale } of scalars) {
+    for (const { name, output, unit, digits } of scalars) {
       const { low, high } = spec.curves.find((curve) => curve.name === name);
       const [value] = view.curves[name];
-      const text = scale === "power" ? powerText(value) : format(value, low, high, unit, digits);
-      write(output, Number.isNaN(value) ? "none" : text);
+      write(output, Number.isNaN(value) ? "none" : format(value, low, high, unit, digits));
     }
     el.dataset.values = spec.live ? "computed" : view.exact ? "exact" : "baked";
   }

@@ -34,8 +34,7 @@ export function readerOf(plot) {
     if (tick) return tick[1];
     const { x, x_scale } = panel;
     if (x_scale === "linear") return `${quantity} ${format(x[i], low, high, unit)}`;
-    const text = powerText(x_scale === "log" ? Math.log10(x[i]) : x[i]);
-    return `${quantity} ${text}${unit && `\u00a0${unit}`}`;
+    return `${quantity} ${powerText(Math.log10(x[i]))}${unit && `\u00a0${unit}`}`;
   }
   function show(i) {
     index = Math.min(panel.x.length - 1, Math.max(0, i));

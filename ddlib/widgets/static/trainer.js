@@ -422,6 +422,7 @@ function build({ model, el }) {
   let due = 0;
   let waiting = 0;
   let last = 0;
+  const calm = matchMedia("(prefers-reduced-motion: reduce)");
   let owed = 0;
   let sent = 0;
   const over = () => school.epoch >= spec.epochs;
@@ -461,8 +462,9 @@ function build({ model, el }) {
     }
     owed = Math.min(owed, 2);
     if (!more || over()) return ended();
-    draw();
-    if (now - sent > OFTEN) {
+    const seldom = now - sent > OFTEN;
+    if (seldom || !calm.matches) draw(); // with reduced motion a picture now and then
+    if (seldom) {
       sent = now;
       tell();
     }

@@ -7,20 +7,24 @@ order in which a reader runs cells, a page shows what it would show if it were r
 from __future__ import annotations
 
 import ast
+import builtins
 import concurrent.futures
 import hashlib
 import importlib
+import inspect
 import io
 import json
 import linecache
 import marshal
 import os
 import pickle
+import random
 import re
 import sys
 import time
 import traceback
 import types
+from collections.abc import Collection
 from contextlib import nullcontext, redirect_stderr, redirect_stdout, suppress
 
 from names import Names, names
@@ -181,6 +185,47 @@ def _keep_prints(before: dict, given: dict, own_prints: dict, prints: dict) -> N
         del seen[gone]
 
 
+def parts(path: str, imported: bool, above) -> str:
+    """Names that an object or an imported module has, for the editor, as JSON; of a path with dots.
+
+    Nothing of a cell is called. A path leads through what lies in modules, instances and classes
+    (`getattr_static`), not through properties or `__getattr__`; of its last object, `dir` may ask
+    a class that says itself what it has. A module of ddlib is imported, no other.
+    """
+    names = _of_module(path) if imported else _of_object(path, above)
+    return json.dumps(sorted(name for name in names if not name.startswith("_")))
+
+
+def _of_module(path: str) -> Collection[str]:
+    """What it says that it has, or else what it did not import from elsewhere itself."""
+    root = path.partition(".")[0]
+    if root == "ddlib":
+        with suppress(ImportError):
+            importlib.import_module(path)
+    there = vars(sys.modules.get(path, types.ModuleType(path)))
+    homes = {name: str(getattr(value, "__module__", path)) for name, value in there.items()}
+    modules = {name for name, value in there.items() if isinstance(value, types.ModuleType)}
+    own = [n for n, home in homes.items() if home.partition(".")[0] == root and "._" not in home]
+    return there.get("__all__", set(own) - modules)
+
+
+def _of_object(path: str, above) -> list[str]:
+    root, *rest = path.split(".")
+    given = [made[cell][root] for cell in above if root in made.get(cell, {})]
+    value = given[-1] if given else vars(builtins).get(root, GONE)
+    for name in rest:
+        value = _lying(value, name)
+    return [] if value is GONE else dir(value)
+
+
+def _lying(value, name: str):
+    """What lies in an object under a name; GONE, if it had to be computed."""
+    found = inspect.getattr_static(value, name, GONE)
+    if isinstance(found, types.GetSetDescriptorType | types.MemberDescriptorType):
+        return getattr(value, name)  # of an array, of slots
+    return GONE if hasattr(type(found), "__get__") else found
+
+
 def _handled(values: dict) -> list[str]:
     """Names of widgets: they change by hand, and nothing has to make them again for that."""
     widgets = sys.modules.get("anywidget")
@@ -313,7 +358,8 @@ class OneThread:
 
 
 def start() -> None:
-    """Take the place of `tqdm` and of threads."""
+    """Take the place of `tqdm` and of threads; the memory that Python began with was made once."""
+    random.seed()
     concurrent.futures.ThreadPoolExecutor = OneThread
     for name in ("tqdm", "tqdm.auto"):
         sys.modules[name] = types.ModuleType(name)

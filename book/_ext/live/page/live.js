@@ -9,7 +9,7 @@
   const MINE = KEYS + location.pathname;
   const FOLDER = MINE.slice(0, MINE.lastIndexOf("/") + 1); // the book's: a server may have others
   const ROOT = new URL("../../", home).pathname; // the site's
-  const [REACT, QUIZ] = [`live-react:${ROOT}`, `quiz:${ROOT}`];
+  const [REACT, QUIZ, TWICE] = ["live-react", "quiz", "quiz-twice"].map((key) => `${key}:${ROOT}`);
   const EXTENTS = `live-extents:${FOLDER.slice(KEYS.length)}`;
   const FORMAT = "direct-drive-work-1";
 
@@ -108,7 +108,7 @@
     status.textContent = text;
     status.classList.toggle("live-long", text.length > 40);
   };
-  const calm = (text) => [text, blocked && "this browser keeps no changes"].filter(Boolean).join(": ");
+  const calm = (text) => [text, blocked && "your changes last until you leave"].filter(Boolean).join(": ");
   // What the button does follows what there is to do.
   let act = () => start();
   let stale = 0; // cells that may be out of date
@@ -246,7 +246,7 @@
   }
 
   function erase() {
-    if (!confirm("Erase your changes, what you solved and the quiz, on all pages of this book?")) return;
+    if (!confirm("Erase your changes, what you solved and all quizzes, on all pages of this book?")) return;
     try {
       for (const key of Object.keys(localStorage)) if (key.startsWith(FOLDER)) write(key, null);
     } catch {
@@ -254,6 +254,7 @@
     }
     mine = work();
     write(QUIZ, null);
+    write(TWICE, null);
     dispatchEvent(new StorageEvent("storage", { key: QUIZ })); // its questions hear of it
     pick("");
     worker?.postMessage({ picked: "" });
@@ -291,6 +292,24 @@
     cell.written = undefined; // it is kept with that word
     remember();
   }
+
+  // What the editor offers: names of the cells above, and what objects of these have, if Python is
+  // there and has nothing else to do.
+  let editor, answered;
+  const namesFor = ({ place }) => ({
+    names: () =>
+      cells.slice(0, place).flatMap(({ name, names: { writes = [], perhaps = [] } }) =>
+        [...writes, ...perhaps].map((each) => [each, name]),
+      ),
+    parts(path, imported) {
+      answered?.([]);
+      answered = undefined;
+      if (!ready || running) return [];
+      const above = cells.slice(0, place + 1).filter((c) => c.turn).map((c) => c.name);
+      worker.postMessage({ path, imported, above });
+      return new Promise((resolve) => (answered = resolve));
+    },
+  });
 
   function open(cell, number) {
     const input = cell.el.querySelector(".cell_input");
@@ -339,38 +358,26 @@
       cell.output.before(tools);
       return;
     }
-    cell.area = make("textarea", {
+    const about = {
       class: "live-code",
-      spellcheck: "false",
-      autocapitalize: "off",
-      autocomplete: "off",
       "aria-label": `Code of ${cell.name}`,
       "aria-describedby": "live-keys",
-    });
+    };
+    const plain = { spellcheck: "false", autocapitalize: "off", autocomplete: "off" };
+    cell.area = editor?.(about, namesFor(cell)) ?? make("textarea", { ...about, ...plain });
     cell.area.value = cell.written = keptText(cell);
-    // Tab indents once something was typed here; it leaves a cell that is passed through, and
-    // after Escape: nobody is trapped.
-    let indents = false;
-    cell.area.addEventListener("focus", () => (indents = false));
-    cell.area.addEventListener("pointerdown", () => setTimeout(() => (indents = true)));
-    cell.area.addEventListener("input", () => {
-      indents = true;
-      changed(cell);
-    });
-    cell.area.addEventListener("keydown", (event) => {
-      if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) {
-        event.preventDefault();
-        run();
-      } else if (event.key === "Escape") indents = false;
-      else if (event.key === "Tab" && indents && !event.shiftKey && !event.ctrlKey) {
-        event.preventDefault();
-        document.execCommand("insertText", false, "    "); // so that it can be undone
-      }
-    });
+    cell.area.addEventListener("input", () => changed(cell));
+    const keys = (event) => {
+      if (event.key !== "Enter" || !(event.ctrlKey || event.metaKey || event.shiftKey)) return;
+      event.preventDefault();
+      event.stopPropagation();
+      run();
+    };
+    cell.area.addEventListener("keydown", keys, { capture: true });
     cell.el.classList.remove("is-asked-below"); // the page's own field is no longer all there is
     input.hidden = true;
     input.after(cell.area, tools);
-    if (cell.handles?.length) cell.el.closest("section").after(sliders(cell)); // it stays in view
+    if (cell.handles?.length) cell.el.closest("section").after(strip(cell));
     fit(cell);
   }
 
@@ -378,7 +385,7 @@
     cell.area.rows = cell.area.value.split("\n").length;
     if (cell.area.value === cell.source) cell.from = undefined;
     cell.el.classList.toggle("live-changed", cell.area.value !== cell.source);
-    for (const update of cell.sliders ?? []) update();
+    cell.handle?.();
   }
 
   function setText(cell, value) {
@@ -391,14 +398,11 @@
   function changed(cell) {
     fit(cell);
     remember();
-    if (blocked) {
-      heardOf.textContent = keptNothing;
-      say(calm(""));
-    }
+    if (blocked) say((heardOf.textContent = keptNothing));
     mark();
     clearTimeout(timer);
     if (react.checked) timer = setTimeout(followUp, 500);
-    else if (ready && !running) say(upToDate());
+    else if (ready && !running && !blocked) say(upToDate());
   }
 
   // --- handles: the numbers of *Change this* ---
@@ -424,34 +428,57 @@
 
   const written = (value, { digits }) => value.toFixed(digits).replace(/(\.\d+?)0+$/, "$1");
 
-  function sliders(cell) {
-    cell.sliders = [];
-    const rows = cell.handles.map((handle, k) => {
-      const id = `live-handle-${cell.place}-${k}`;
-      const range = make("input", { type: "range", id, min: handle.low, max: handle.high });
-      range.step = handle.step;
-      const shown = make("output", { for: id });
-      const name = handle.unit ? `${handle.label}, ${handle.unit}` : handle.label;
-      range.addEventListener("input", () => {
-        const spot = spotOf(cell, handle);
-        if (!spot) return;
-        const value = written(Number(range.value), handle);
-        cell.area.setRangeText(value, spot.start, spot.end, "preserve");
-        changed(cell);
-      });
-      cell.sliders.push(() => {
-        const spot = spotOf(cell, handle);
-        range.disabled = !spot;
-        if (!spot) return (shown.textContent = "–");
-        if (Number(range.value) !== spot.value) range.value = spot.value;
-        shown.textContent = spot.value;
-        range.setAttribute("aria-valuetext", `${shown.textContent} ${handle.unit}`.trim());
-      });
-      return make("div", {}, make("label", { for: id }, name), range, shown);
+  // One handle in a strip that stays in view, and a choice of those that move the cell in view.
+  function strip(cell) {
+    const choice = make("select", { "aria-label": "Handle: a number of Change this" });
+    const range = make("input", { type: "range", id: "live-handle" });
+    const shown = make("output", { for: range.id });
+    const name = ({ label, unit }) => (unit ? `${label}, ${unit}` : label);
+    const options = cell.handles.map((handle, k) => make("option", { value: k }, name(handle)));
+    choice.append(...options);
+    const panel = make("div", { class: "live-handles" }, choice, range, shown);
+    const chosen = () => cell.handles[choice.value];
+    const update = () => {
+      const { low, high, step, unit } = chosen();
+      const spot = spotOf(cell, chosen());
+      Object.assign(range, { min: low, max: high, step, value: spot?.value ?? low, disabled: !spot });
+      shown.textContent = spot?.value ?? "–";
+      range.setAttribute("aria-label", name(chosen()));
+      range.setAttribute("aria-valuetext", `${shown.textContent} ${unit}`.trim());
+    };
+    choice.addEventListener("change", update);
+    range.addEventListener("input", () => {
+      const spot = spotOf(cell, chosen());
+      if (!spot) return;
+      cell.area.setRangeText(written(Number(range.value), chosen()), spot.start, spot.end, "preserve");
+      changed(cell);
     });
-    const title = make("summary", {}, "Handles: each moves a number of Change this");
-    const panel = make("details", { class: "live-handles" }, title, make("div", {}, ...rows));
-    panel.open = matchMedia("(min-width: 48rem)").matches; // on a phone it would cover the figure
+    const offer = ({ place }) => {
+      const graph = follow.graph(cells);
+      const before = cell.area.value;
+      const moves = (handle) => {
+        const { start, end } = spotOf(cell, handle) ?? {};
+        const now = `${before.slice(0, start)}9e9${before.slice(end)}`;
+        const only = new Map([[cell.place, follow.renamed(before, now)]]);
+        return follow.after(cells, graph, [cell.place], only).has(place);
+      };
+      const those = options.filter((_, k) => moves(cell.handles[k]));
+      if (!those.length) those.push(...options);
+      const kept = options[choice.value];
+      choice.replaceChildren(...those);
+      if (those.includes(kept)) kept.selected = true;
+      update();
+    };
+    const inView = new IntersectionObserver(
+      (entries) => {
+        const entry = entries.findLast(({ isIntersecting }) => isIntersecting);
+        if (!entry || panel.querySelector(":focus-visible")) return; // it is in use by the keyboard
+        offer(cells.find(({ el }) => el === entry.target));
+      },
+      { rootMargin: "-40% 0px" },
+    );
+    for (const { el } of cells) inView.observe(el);
+    cell.handle = update;
     return panel;
   }
 
@@ -525,6 +552,7 @@
   const OUTPUTS = '.cell_output :is(.output, .ddlib-widget, script[type*="widget-view"])';
   function fresh(cell) {
     const first = (el) => !el.closest(".live-output") && !el.parentElement.closest(".output, .ddlib-widget");
+    cell.el.style.minBlockSize = `${cell.el.offsetHeight}px`; // nothing below moves until it ran
     cell.built ??= [...cell.el.querySelectorAll(OUTPUTS)].filter(first);
     for (const el of cell.built) {
       const mark = new Comment();
@@ -744,7 +772,7 @@
     };
     interrupts = isolated ? new Uint8Array(new SharedArrayBuffer(1)) : undefined;
     const files = data.map((name) => `data/${name}`);
-    worker.postMessage({ start: files, interrupts, picked: picked() });
+    worker.postMessage({ start: files, ahead, interrupts, picked: picked() });
   }
 
   function advance(bytes) {
@@ -768,6 +796,7 @@
   function heard(message) {
     if (foreign && (message.form || message.widget)) return;
     if (message.form) inBoth(message);
+    else if (message.parts) answered?.(message.parts.filter(isText));
     else if (message.picked !== undefined) pick(message.picked);
     else if (message.widget) withHost(() => host.heard(message.widget, message.buffers));
     else if (message.bytes) {
@@ -826,6 +855,7 @@
 
   function released(cell, time = "") {
     cell.el.classList.remove("live-running");
+    cell.el.style.minBlockSize = "";
     cell.gauge?.remove();
     if (cell.time) cell.time.textContent = time;
   }
@@ -973,13 +1003,7 @@
       cell.asked = true;
       waiting.add(cell);
     }
-    if (!worker) {
-      boot();
-      // While Python starts, all packages come, in the order in which cells import them: the browser
-      // keeps them for the worker, which would ask for each when a cell needs it.
-      for (const name of ahead.splice(0))
-        fetch(new URL(`pyodide/${name}`, home), { priority: "low" }).then((a) => a.blob(), () => {});
-    }
+    if (!worker) boot();
     face();
     next();
   }
@@ -1075,10 +1099,13 @@
     }
     say("starting Python");
     if (isOn() || (await isolate())) return;
+    document.documentElement.dataset.live = "running";
+    editor = await import(new URL("editor.js", home)).then((module) => module.editor, () => undefined);
     cells.forEach(open);
     tally();
-    document.documentElement.dataset.live = "running";
-    const keys = "Ctrl+Enter runs a cell. Tab indents after you typed; Escape, then Tab, leaves the code.";
+    const keys =
+      "Ctrl+Enter or Shift+Enter runs a cell." +
+      (editor ? " Tab indents after you typed, or takes a name; Escape, then Tab, leaves the code." : "");
     const rest = make("div", { class: "live-rest" }, reacts, reset, make("p", { id: "live-keys" }, keys));
     (cells.find((c) => c.handles) ?? cells[0]).el.before(rest);
     mark();

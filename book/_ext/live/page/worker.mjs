@@ -1,4 +1,5 @@
 // Python in a worker of its own: the page stays quick.
+import { unpack, unzipped } from "./packs.mjs";
 import { loadPyodide } from "./pyodide/pyodide.mjs";
 
 const here = (path) => new URL(path, import.meta.url).href;
@@ -9,13 +10,17 @@ const usual = self.fetch.bind(self);
 self.fetch = async (...request) => {
   const answer = await usual(...request);
   if (!answer.ok || !answer.body) return answer;
+  if (answer.url.endsWith(".wasm")) {
+    tell({ bytes: Number(answer.headers.get("Content-Length")) });
+    return answer; // as it came: a browser keeps what it compiles of that, for the next page
+  }
   const count = new TransformStream({
     transform(chunk, out) {
       tell({ bytes: chunk.byteLength });
       out.enqueue(chunk);
     },
   });
-  const { headers, status } = answer; // WebAssembly is compiled as it comes by its content type
+  const { headers, status } = answer;
   return new Response(answer.body.pipeThrough(count), { headers, status });
 };
 
@@ -31,11 +36,12 @@ const MODULES = ["names.py", "kernel.py"];
 const INSTEAD = ["torch", "anywidget", "ipywidgets", "IPython"];
 let python, kernel, packages;
 
-async function file(path) {
+async function asked(path) {
   const answer = await fetch(here(path));
   if (!answer.ok) throw new Error(`${path} is missing on this site (${answer.status})`);
-  return answer.arrayBuffer();
+  return answer;
 }
+const file = async (path) => (await asked(path)).arrayBuffer();
 
 // Extents that the reader kept lie in a file, as beside a notebook (ddlib/trajectories.py); the
 // page has its text from lesson to lesson.
@@ -56,21 +62,25 @@ function shut() {
     for (let at = holder; at; at = Object.getPrototypeOf(at)) delete at[name];
 }
 
-async function start(data) {
-  const lock = here("pyodide/pyodide-lock.json");
-  const [found, ...files] = await Promise.all([lock, ...MODULES, ...data].map(file));
-  packages = JSON.parse(new TextDecoder().decode(found)).packages;
+async function start({ start: data, ahead }) {
+  const started = asked("pyodide/started.gz").then(unzipped);
+  const lock = await (await asked("pyodide/pyodide-lock.json")).json();
+  packages = lock.packages;
+  for (const name of ["numpy", "ddlib", ...ahead]) come(name);
+  const files = Promise.all([...MODULES, ...data].map(file));
   python = await loadPyodide({
     indexURL: here("pyodide/"),
     packageBaseUrl: here("pyodide/"),
-    lockFileURL: lock,
+    lockFileContents: lock,
     convertNullToNone: true,
+    _loadSnapshot: started,
   });
   await load(["numpy", "ddlib"]);
   python.FS.mkdirTree("/book/data");
   python.FS.chdir("/book"); // where a notebook of the book runs
+  const content = await files;
   [...MODULES, ...data].forEach((path, k) =>
-    python.FS.writeFile(`/book/${path}`, new Uint8Array(files[k])),
+    python.FS.writeFile(`/book/${path}`, new Uint8Array(content[k])),
   );
   python.runPython("import sys; sys.path.insert(0, '/book')");
   shut();
@@ -79,30 +89,45 @@ async function start(data) {
   kernel.page = (text, buffers) => tell({ widget: JSON.parse(text), buffers: buffers.toJs() });
 }
 
-// Packages, by their hashes in the lock. Pyodide itself only writes down which of them it refused.
+// Packages come all at once, in the order of the page's imports, while Python starts and cells run.
+const coming = new Map();
+function come(name) {
+  if (!coming.has(name)) coming.set(name, asked(`pyodide/${packages[name].file_name}`).then(unzipped));
+  coming.get(name).catch(() => coming.delete(name)); // it is asked for again by the cell that needs it
+  return coming.get(name);
+}
+
+// Put packages with all that they depend on where Python finds them.
+const there = new Set();
 async function load(names) {
-  const refused = [];
-  const errorCallback = (text) => refused.push(text);
-  await python.loadPackage(names, { messageCallback() {}, errorCallback });
-  if (refused.length) throw new Error(`a package did not come whole (${refused[0].split("\n")[0]})`);
+  for (const name of names) {
+    if (there.has(name)) continue;
+    there.add(name);
+    const { depends, install_dir } = packages[name];
+    await load(depends);
+    const root = install_dir === "site" ? python._api.sitePackages : install_dir;
+    try {
+      await unpack(python, root, await come(name));
+    } catch (error) {
+      there.delete(name);
+      throw new Error(`a package did not come whole (${name}: ${error.message})`);
+    }
+    coming.delete(name);
+  }
 }
 
 // Get the package in which a module lies, once; whether there is one.
-const asked = new Set();
+const wanted = new Set();
 async function get(module) {
-  if (asked.has(module)) return false;
-  asked.add(module);
+  if (wanted.has(module)) return false;
+  wanted.add(module);
   if (INSTEAD.includes(module)) {
     python.FS.writeFile(`/book/${module}.py`, new Uint8Array(await file(`instead/${module}.py`)));
     return true;
   }
-  if (module === "workshop" || module === "beyond") {
-    python.unpackArchive(await file("workshop.zip"), "zip", { extractDir: "/book" });
-    return true;
-  }
   const name = Object.keys(packages).find((key) => packages[key].imports.includes(module));
   if (!name) return false;
-  await load(name);
+  await load([name]);
   return true;
 }
 
@@ -111,15 +136,19 @@ let last = Promise.resolve();
 self.onmessage = ({ data }) => (last = last.then(() => act(data)));
 
 async function act(message) {
-  const { start: data, interrupts, run, source, above, how, widget, buffers, forms } = message;
+  const { start: data, interrupts, run, source, above, how, widget, buffers, forms, path } = message;
   try {
     if (forms) return kernel.forms((cell, number, text) => tell({ form: cell, number, text }));
+    if (path) {
+      const parts = kernel.parts(path, message.imported, python.toPy(above));
+      return tell({ parts: JSON.parse(parts) });
+    }
     if (widget) {
       const names = JSON.parse(kernel.heard(widget, buffers));
       return names.length && tell({ kind: "moved", names });
     }
     if (data) {
-      await start(data);
+      await start(message);
       pick(message.picked);
       if (interrupts) python.setInterruptBuffer(interrupts);
       return tell({ ready: true });

@@ -10,11 +10,12 @@ import numpy as np
 
 from beyond.control.windowed import WindowFeedforward
 from beyond.rivals.protocol import derivative_filters
+from ddlib.analysis import inside_hull
 from ddlib.control import PID, ComputedTorque, Feedforward, closed_loop, plant
 from ddlib.dynamics import Arm, end_point_error, jacobian
 from ddlib.effects import Effects, EncoderZero
 from ddlib.learning import TorqueModel, sliding_windows
-from ddlib.setups import Setup, inside_hull
+from ddlib.setups import Setup
 from ddlib.simulation import CONTROL_STEP, LOG_STEP, REST, Recording, follow
 from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS, Trajectory, pick_and_place, time_grid
 from workshop.report import results

@@ -168,8 +168,9 @@ function build({ model, el }) {
       const { top, height, middle } = at.bands[i];
       level(shelf.zero, at.bands[i]);
       const [from, to] = [at.x1 + 10, at.jar - 9];
-      put(shelf.pours, { d: narrow ? "M0 0" : `M${from} ${middle}H${to}M${to - 4} ${middle - 4}L${to} ${middle}L${to - 4} ${middle + 4}` });
-      const ticks = [0.3, 0.52, 0.74].map((share) => `M${at.jar + at.jarWide} ${short(top + share * height)}h-7`);
+      const zero = `M${at.jar} ${middle}h${at.jarWide}`;
+      put(shelf.pours, { d: narrow ? zero : `${zero}M${from} ${middle}H${to}M${to - 4} ${middle - 4}L${to} ${middle}L${to - 4} ${middle + 4}` });
+      const ticks = [0.28, 0.72].map((share) => `M${at.jar + at.jarWide} ${short(top + share * height)}h-7`);
       put(shelf.glass, { d: `M${at.jar - 4} ${top}q4 0 4 4v${height - 12}q0 8 8 8h${at.jarWide - 16}q8 0 8 -8v${12 - height}q0 -4 4 -4${ticks.join("")}` });
     });
   }
@@ -284,11 +285,10 @@ function build({ model, el }) {
       band.thumbs.replaceChildren(...(at.narrow ? [] : parts[band.name].map((f, k) => make("path", { class: "thumb", d: `M${spot(k)} ${middle + 15}V${short(middle + 15 - f / thumb)}M${spot(k)} ${short(middle + 15 - f / thumb)}h0` }))));
       // the jar
       const full = playing ? highest : most;
-      const fill = Math.min(1, Math.abs(whole) / full) * (height - 10);
+      const fill = Math.max(-1, Math.min(1, whole / full)) * (height / 2 - 5); // from zero, in the middle
       const [left, wave] = [at.jar + 2.5, (at.jarWide - 5) / 4];
       const surface = `q${wave / 2} -4 ${wave} 0t${wave} 0t${wave} 0t${wave} 0`;
-      const round = Math.min(6, fill);
-      put(band.jar.level, { class: whole < 0 ? "level hollow" : "level", d: fill < 1 ? "M0 0" : `M${left} ${short(top + height - 2.5 - fill)}${surface}v${short(fill - round)}q0 ${round} ${-round} ${round}h${2 * round - 4 * wave}q${-round} 0 ${-round} ${-round}Z` });
+      put(band.jar.level, { class: whole < 0 ? "level hollow" : "level", d: Math.abs(fill) < 1 ? "M0 0" : `M${left} ${short(middle - fill)}${surface}V${middle}H${left}Z` });
       put(band.jar.number, at.narrow ? { x: at.jar + at.jarWide + 4, y: at.bands[i].name, class: "number y" } : { x: at.jar + at.jarWide + 12, y: middle + 2, class: "number" });
       put(band.jar.how, { x: at.jar + at.jarWide + 12, y: middle + 18 });
       write(band.jar.number, numberOf(whole));
@@ -320,7 +320,7 @@ function build({ model, el }) {
     const filled = bands.filter(({ name }) => Math.abs(sum(parts[name].map((f, k) => f * path[k] * RAD))) > 0.1 * most);
     const names = filled.map(({ name }) => name);
     if (!names.length) return `${what} No jar gets much.`;
-    return `${what} ${names.length === 1 ? `Only the ${names[0]} jar fills.` : `These jars fill: ${names.join(", ")}.`}`;
+    return `${what} ${names.length === 1 ? `Only the ${names[0]} jar moves.` : `These jars move: ${names.join(", ")}.`}`;
   }
 
   function draw() {

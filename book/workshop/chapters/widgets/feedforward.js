@@ -72,7 +72,8 @@ computes((view) => {
 // Figure 2-1, whose boxes and arrows say what is switched.
 extras.push((view) => {
   const { el } = view;
-  el.classList.add("ddlib-feedforward");
+  el.classList.add("ddlib-feedforward", "quiet");
+  view.tall = 180;
   const text = (x, y, words, kind = "") => make("text", { x, y, class: kind }, words);
   const box = (name, x, y, ...lines) => {
     const rows = lines.map((line, k) => text(x, y + 4.5 + 15 * (k - (lines.length - 1) / 2), line));
@@ -88,12 +89,18 @@ extras.push((view) => {
   const boxes = [
     box("model", 190, 45),
     box("feedback", 190, 120, "feedback", "at each joint"),
-    box("plant", 404, 120, ""),
     box("", 52, 82, "reference", "trajectory"),
   ];
   boxes[0].append(text(190, 43, "inverse arm"), knows);
-  const rubs = text(404, 134, "", "small");
-  boxes[2].append(text(404, 118, "arm"), rubs);
+  const rubs = text(432, 146, "", "small");
+  const joint = (kind, cx, cy, r) => make("circle", { class: kind, cx, cy, r });
+  const arm = make(
+    "g",
+    { class: "arm" },
+    make("path", { class: "link shoulder", d: "M370 120L412 62" }),
+    make("path", { class: "link elbow", d: "M412 62L470 76" }),
+    joint("shoulder", 370, 120, 10), joint("elbow", 412, 62, 9), joint("elbow", 470, 76, 7),
+  ); // prettier-ignore
   svg.append(
     flow("", "M52 60V45H132", head(140, 45)),
     flow("", "M52 104V120H98", head(106, 120)),
@@ -101,12 +108,12 @@ extras.push((view) => {
     flow("model", "M240 45H322V102", head(322, 111, 90)),
     flow("feedback", "M240 120H304", head(313, 120)),
     flow("total", "M331 120H346", head(354, 120)),
-    flow("", "M454 120H474", head(482, 120)),
-    flow("", "M466 120V166H115V138", head(115, 129, -90)),
-    sum(115, 120), sum(322, 120), ...boxes, ahead, back,
-    text(130, 138, "−", "sign"), text(336, 104, "+", "sign"), text(290, 160, "measured motion", "small"),
+    flow("", "M370 132V166H115V138", head(115, 129, -90)),
+    sum(115, 120), sum(322, 120), ...boxes, arm, rubs, ahead, back,
+    text(130, 138, "−", "sign"), text(336, 104, "+", "sign"), text(240, 160, "measured motion", "small"),
   );
   view.top.prepend(svg);
+  el.append(el.querySelector(":scope > .frame-bar"));
 
   const follow = () => {
     const on = (name) => view.get(name);
@@ -116,7 +123,7 @@ extras.push((view) => {
     svg.classList.toggle("no-feedback", !on("feedback"));
     const masses = `${Math.round(on("masses"))} %`;
     write(knows, !on("model") ? "off" : on("known") ? `${masses}, friction` : `masses ${masses}`);
-    write(rubs, on("friction") ? "with friction" : "rigid");
+    write(rubs, on("friction") ? "arm with friction" : "rigid arm");
     write(ahead, on("model") ? amount(torques.ahead) : "");
     write(back, on("feedback") ? amount(torques.back) : "");
     const wide = (x) => Math.min(9, 1.5 + x / 2);

@@ -4,6 +4,7 @@
 import { buttonOf, dress, make, numbersOf, onKeys, put, safely, short, write } from "ddlib/elements.js";
 import { JOINTS, NAMES, activity, networkOf, placesOf, scaledWindow, torqueOfOutput } from "ddlib/engine.js";
 import { frameOf } from "ddlib/frame.js";
+import { balanceOf, number, point, tiltOf } from "./balance.js";
 import { worldOf } from "./world.js";
 
 const FACING = (85 * Math.PI) / 180; // which way the arm points at zero angles
@@ -21,8 +22,8 @@ function placesIn(wide) {
     return {
       s, wide, high: 548 * s,
       base: [x(122), y(444)], metre: 335 * s, thick: 27 * s, arcs: [[68, 86, 102], [48, 64, 79]].map((r) => r.map((v) => v * s)),
-      torque: [x(0), y(532)], says: [x(110), y(532)],
-      elbow: { from: x(205), to: x(345), y: y(40), name: [x(205), y(24)] },
+      torque: [x(0), y(20)], says: [x(0), y(46)], // where no arc comes
+      elbow: { from: x(230), to: x(370), y: y(40), name: [x(230), y(24)] },
       rows: { from: x(462), to: x(756), A: y(92), B: y(424), tall: 54 * s, badge: x(414), dot: 4.6 * s },
       chord: { from: x(482), to: x(736), y: y(258), name: [x(440), y(232)] },
       note: [x(609), y(518)],
@@ -50,7 +51,7 @@ const rise = (path) => path.map((q, k) => q - path[0] - ((path.at(-1) - path[0])
 function build({ model, el }) {
   const spec = model.get("spec");
   const { width, arm, networks: specs } = spec;
-  dress(el, spec.title, "ddlib-hero");
+  dress(el, spec.title, "ddlib-hero", "quiet");
   const values = numbersOf(model.get("weights"), "Float32");
   const each = values.length / specs.length;
   const networks = specs.map((network, k) => {
@@ -107,17 +108,9 @@ function build({ model, el }) {
   const keys = [[path("arc truth"), text("y0", "torque")], [path("arc told"), text("y0", "what A and B say")]];
   const legend = [group("legend-truth", ...keys[0]), group("legend-told", ...keys[1])];
   const scales = networks.map(({ name }) => {
-    const block = (kind) => ({ g: group(`block ${kind}`), shape: path("shape"), number: text("number x"), unit: text("unit x", "kg m²") });
-    const pan = (kind, words) => {
-      const piece = { ropes: path("ropes"), dish: path("dish"), block: block(kind), name: text(`pan-name x ${kind}`, words) };
-      piece.block.g.append(piece.block.shape, piece.block.number, piece.block.unit);
-      return piece;
-    };
-    const parts = { post: path("post"), ticks: path("ticks"), beam: line("beam"), needle: path("needle"), pivot: make("circle", { class: "pivot" }) };
-    const pans = [pan("own", "this arm"), pan("net", name)];
+    const balance = balanceOf("this arm", name);
     const verdict = text("verdict x");
-    const g = group("scale", ...Object.values(parts), ...pans.flatMap((p) => [p.ropes, p.dish, p.block.g, p.name]), verdict);
-    return { ...parts, pans, verdict, g };
+    return { ...balance, verdict, g: group("scale", balance.el, verdict) };
   });
   const under = text("small", "Weighed: all rows of each network.");
   const svg = make(
@@ -133,8 +126,6 @@ function build({ model, el }) {
     note, ...legend, ...scales.map(({ g }) => g), under,
   ); // prettier-ignore
 
-  const point = (x, y) => `${short(x)} ${short(y)}`;
-  const number = (x) => x.toFixed(1).replace(/^-0\.0$/, "0.0").replace("-", "−");
   function layout() {
     at = placesIn(el.clientWidth - 8 || 1120); // without the padding
     const { s, base, chord, elbow, rows: place } = at;
@@ -276,44 +267,16 @@ function build({ model, el }) {
   let swung = 1;
   let load = 1; // how much of it lies on the pans
   function drawScales() {
-    const { x, half: reach, post, rope: fall, verdict } = at.scales;
-    const { s } = at;
+    const { verdict, ...place } = at.scales;
     const weighed = get("weighed");
     scales.forEach((scale, k) => {
-      const top = at.scales[networks[k].name];
-      const { weight, learnt } = networks[k];
-      const tilt = weighed ? 0.24 * Math.tanh((3 * (weight - arm)) / arm) * swung : 0; // downwards on its side
-      const ends = [-1, 1].map((side) => [x + side * reach * Math.cos(tilt), top + side * reach * Math.sin(tilt)]);
-      put(scale.post, { d: `M${point(x - 4 * s, top)}L${point(x - 7 * s, top + post)}C${point(x - 20 * s, top + post + 2 * s)} ${point(x - 34 * s, top + post + 4 * s)} ${point(x - 36 * s, top + post + 10 * s)}H${short(x + 36 * s)}C${point(x + 34 * s, top + post + 4 * s)} ${point(x + 20 * s, top + post + 2 * s)} ${point(x + 7 * s, top + post)}L${point(x + 4 * s, top)}Z` });
-      const tick = [-2, -1, 0, 1, 2].map((n) => `M${point(x + 30 * s * Math.sin(n * 0.18), top - 30 * s * Math.cos(n * 0.18))}L${point(x + 37 * s * Math.sin(n * 0.18), top - 37 * s * Math.cos(n * 0.18))}`);
-      put(scale.ticks, { d: tick.join("") });
-      put(scale.needle, { d: `M${point(x + 5 * s * Math.cos(tilt), top + 5 * s * Math.sin(tilt))}L${point(x + 28 * s * Math.sin(tilt), top - 28 * s * Math.cos(tilt))}L${point(x - 5 * s * Math.cos(tilt), top - 5 * s * Math.sin(tilt))}Z` });
-      put(scale.beam, { x1: short(ends[0][0]), y1: short(ends[0][1]), x2: short(ends[1][0]), y2: short(ends[1][1]) });
-      put(scale.pivot, { cx: x, cy: top, r: 7 * s });
-      scale.pans.forEach(({ ropes, dish, block, name }, side) => {
-        const [left, end] = ends[side];
-        const floor = end + fall;
-        const w = (at.narrow ? 26 : 40) * s;
-        put(ropes, { d: `M${point(left - 0.8 * w, floor)}L${point(left, end)}L${point(left + 0.8 * w, floor)}` });
-        put(dish, { d: `M${point(left - w, floor)}H${short(left + w)}Q${point(left, floor + 16 * s)} ${point(left - w, floor)}Z` });
-        const value = side ? weight : arm;
-        const heavy = value > 0.1 * arm;
-        const drop = side && weighed ? (1 - load) * -26 * s : 0;
-        const size = Math.max(0.85, s); // of what holds words
-        const [bw, bh] = at.narrow ? [23 * s, 31 * s] : [29 * size, 38 * size];
-        const foot = floor + drop;
-        put(block.shape, { d: heavy && (!side || weighed) ? `M${point(left - bw, foot)}L${point(left - 0.86 * bw, foot - bh + 4)}Q${point(left - 0.84 * bw, foot - bh)} ${point(left - 0.72 * bw, foot - bh)}H${short(left - 0.25 * bw)}V${short(foot - bh - 4 * s)}h${short(-4 * s)}v${short(-7 * s)}H${short(left + 0.25 * bw + 4 * s)}v${short(7 * s)}h${short(-4 * s)}V${short(foot - bh)}H${short(left + 0.72 * bw)}Q${point(left + 0.84 * bw, foot - bh)} ${point(left + 0.86 * bw, foot - bh + 4)}L${point(left + bw, foot)}Z` : "M0 0" });
-        block.g.classList.toggle("bare", Boolean(side) && (!weighed || !heavy));
-        block.g.style.opacity = side && weighed ? load : 1;
-        put(block.number, { x: short(left), y: short(foot - (heavy && (!side || weighed) ? 0.5 * bh : 10 * s)) });
-        put(block.unit, { x: short(left), y: short(foot - 0.14 * bh) });
-        block.unit.style.display = heavy && (!side || weighed) ? "" : "none";
-        write(block.number, side && !weighed ? "?" : number(value));
-        put(name, { x: short(left), y: short(floor + (at.narrow ? 21 : 24) * s) });
-        name.style.display = at.narrow && !side ? "none" : "";
-      });
-      put(scale.verdict, { x, y: top + verdict });
-      write(scale.verdict, weighed ? `${networks[k].name} learnt ${learnt}.` : "");
+      const { name, weight, learnt } = networks[k];
+      const { s, narrow } = at;
+      const how = weighed ? { tilt: swung * tiltOf(arm, weight), load } : { tilt: 0 };
+      scale.draw({ ...place, top: place[name], s, narrow }, arm, weighed ? weight : null, how);
+      scale.pans[0].name.style.display = at.narrow ? "none" : "";
+      put(scale.verdict, { x: place.x, y: place[name] + verdict });
+      write(scale.verdict, weighed ? `${name} learnt ${learnt}.` : "");
     });
   }
 

@@ -100,7 +100,7 @@ class Hero(PageWidget):
     """
 
     _esm = bundle(_HERE / "hero.js")
-    _css = styles(_HERE / "hero.css")
+    _css = styles(_HERE / "hero.css", _HERE / "balance.css")
 
     weights = t.Bytes(help="both networks' weights as float32", read_only=True).tag(sync=True)
     guess = t.Enum(("", "A", "B"), "", help="which one has met the arm").tag(sync=True)
@@ -160,7 +160,7 @@ def still(pair: Sequence[Twin], arm: float) -> Illustration:
         axis.axis("off")
         _draw_arm(axis, _run().q_true[centre], _run().tau_true[centre, 0])
         beads = _draw_window(axis, "shoulder", paths[0], (482, 736, 258), (440, 232, "right"), 32)
-        _draw_window(axis, "elbow", paths[1], (205, 345, 52), (205, 36, "left"), 40)
+        _draw_window(axis, "elbow", paths[1], (230, 370, 52), (230, 36, "left"), 40)
         for twin, level, scale in zip(pair, (92, 424), (40, 336)):
             _draw_row(axis, twin, level, beads)
             _draw_balance(axis, twin.name, arm, scale)
@@ -193,14 +193,14 @@ def _draw_arm(axis, q, torque):
     shoulder, elbow = (places[1:] + places[:-1]) / 2
     bowed = shoulder, np.add(shoulder, (100, 30)), (350, 258), (472, 258)
     _thread(axis, bowed, color=TONES["shoulder"], ls=":", lw=1.4)
-    rising = elbow, np.subtract(elbow, (0, 60)), (275, 150), (275, 86)
+    rising = elbow, np.subtract(elbow, (0, 60)), (300, 150), (300, 86)
     _thread(axis, rising, color=TONES["elbow"], ls=":", lw=1.4)
     angles = turned[0] + np.linspace(0, 1.7 * torque / 62, 40)
     arc = base[:, None] + 62 * np.stack([np.cos(angles), -np.sin(angles)])
     axis.plot(*arc[:, :-4], color=INK, lw=3.5)
     axis.annotate("", arc[:, -1], arc[:, -5], arrowprops={"color": INK, "width": 1, "headwidth": 9})
-    axis.text(38, 532, "torque", fontsize=11)
-    axis.plot([0, 30], [527, 527], color=INK, lw=3.5)
+    axis.text(38, 20, "torque", fontsize=11)
+    axis.plot([0, 30], [15, 15], color=INK, lw=3.5)
 
 
 def _draw_window(axis, joint, path, place, name, scale):

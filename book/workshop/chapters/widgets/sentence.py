@@ -50,7 +50,7 @@ class _LiveSentence(PageWidget):
         data: Mapping,
         code: str,
     ):
-        self._parameters = {p.name: p for p in parameters}
+        self._numbers = {p.name: p for p in parameters}
         numbers = [{**p.description(), "step": steps[p.name]} for p in parameters]
         spec = {"key": key_of(type(self)), "code": code, "parts": list(parts), "numbers": numbers}
         self.set_trait("spec", {**spec, **data})
@@ -60,7 +60,7 @@ class _LiveSentence(PageWidget):
 
     @t.validate("values")
     def _whole(self, proposal):
-        return {**{name: p.value for name, p in self._parameters.items()}, **proposal["value"]}
+        return {**{name: p.value for name, p in self._numbers.items()}, **proposal["value"]}
 
     def results(self, **values) -> dict[str, str]:
         """The texts that end the sentence, by ddlib; what the page must show."""
@@ -76,7 +76,7 @@ class _LiveSentence(PageWidget):
         """A number with its unit, with as many decimals as its step has."""
         step = next(n["step"] for n in self.spec["numbers"] if n["name"] == name)
         digits = max(0, -int(np.floor(np.log10(step) + 1e-9)))
-        unit = self._parameters[name].unit
+        unit = self._numbers[name].unit
         return f"{_signed(value, digits)}{'' if unit == '°' else ' '}{unit}"
 
 

@@ -3,7 +3,8 @@
 import { make, put, short } from "ddlib/elements.js";
 import { placesOf } from "ddlib/engine.js";
 
-// `kinds` are names of arms, the lowest first; `place(kind, q)` draws one at joint angles in rad.
+// `kinds` are names of arms, the lowest first; `place(kind, q)` draws one at joint angles in rad. `at` has
+// the place of a point in m; `hand(kind)` is where a hand is, in m.
 export function armsOf(lengths, kinds, [left, bottom, right, top], label) {
   const scale = 300 / (right - left);
   const x = (v) => short(scale * (v - left));
@@ -11,22 +12,23 @@ export function armsOf(lengths, kinds, [left, bottom, right, top], label) {
   const arms = new Map(
     kinds.map((kind) => {
       const links = ["upper", "fore"].map((link) => make("path", { class: `links ${link}` }));
-      const hand = make("circle", { class: "hand", r: 4 });
-      return [kind, { links, hand, el: make("g", { class: `arm ${kind}` }, ...links, hand) }];
+      const ends = ["elbow", "hand"].map((end) => make("circle", { class: end, r: end === "hand" ? 4 : 7 }));
+      return [kind, { links, ends, el: make("g", { class: `arm ${kind}` }, ...links, ...ends) }];
     }),
   );
-  const base = make("circle", { class: "joint", cx: x(0), cy: y(0), r: 6 });
+  const base = make("circle", { class: "joint", cx: x(0), cy: y(0), r: 8 });
   const size = [300, y(bottom)];
   const svg = make("svg", { class: "stage", role: "img", viewBox: `0 0 ${size.join(" ")}` });
   svg.setAttribute("aria-label", label);
   svg.append(...[...arms.values()].map(({ el }) => el), base);
   const place = (kind, q) => {
-    const { links, hand } = arms.get(kind);
-    const [elbow, end] = placesOf(lengths, q);
-    const at = ([a, b]) => `${x(a)} ${y(b)}`;
-    links[0].setAttribute("d", `M${at([0, 0])}L${at(elbow)}`);
-    links[1].setAttribute("d", `M${at(elbow)}L${at(end)}`);
-    put(hand, { cx: x(end[0]), cy: y(end[1]) });
+    const arm = arms.get(kind);
+    arm.places = placesOf(lengths, q);
+    const [elbow, hand] = arm.places;
+    const to = ([a, b]) => `${x(a)} ${y(b)}`;
+    arm.links[0].setAttribute("d", `M${to([0, 0])}L${to(elbow)}`);
+    arm.links[1].setAttribute("d", `M${to(elbow)}L${to(hand)}`);
+    arm.places.forEach(([a, b], k) => put(arm.ends[k], { cx: x(a), cy: y(b) }));
   };
-  return { svg, place, arms };
+  return { svg, place, arms, at: ([a, b]) => [x(a), y(b)], hand: (kind) => arms.get(kind).places[1] };
 }

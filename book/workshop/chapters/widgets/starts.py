@@ -7,15 +7,16 @@ from collections.abc import Mapping
 import numpy as np
 
 from ddlib.analysis import decompose, shares
+from ddlib.figures import JOINTS
 from ddlib.learning import Weights
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.base import CurveWidget
-from ddlib.widgets.hinton import CENTRE, JOINTS, share_panel
 from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.parts.parameters import Choice
-from workshop.chapters.widgets.pencil import SCRIPT, STYLE
+from workshop.chapters.widgets import CENTRE
+from workshop.chapters.widgets.knob import SCRIPT, STYLE
 
-_SHARES = dict(enumerate(("pos.", "vel.", "acc.", "jerk", "rest")))
+_SHARES = list(enumerate(("pos.", "vel.", "acc.", "jerk", "rest")))
 
 
 class UnitFromFiveStarts(CurveWidget):
@@ -51,7 +52,10 @@ class UnitFromFiveStarts(CurveWidget):
                     "Parts, after training", {"even": "even", "odd": "odd", "constant": "constant"},
                     CENTRE, time, y_fit=True,
                 ),
-                share_panel("Share of the energy", "responds to", _SHARES),
+                Panel(
+                    "Share of the energy", "shares", "responds to", range(len(_SHARES)),
+                    kind="bars", ticks=_SHARES, y_range=(0.0, 1.0),
+                ),
             ],
             alt="One row of weights before and after training, from a start of one size. "
             "Its even and odd part. The derivatives that it responds to.",

@@ -87,7 +87,7 @@ extras.push((view) => {
   const ghosts = [0, 1, 2, 3, 4].map((k) => `ghost g${k}`);
   const box = [-0.12, -0.84, 0.95, 0.13];
   const stage = armsOf(lengths, [...ghosts, "real"], box, "The arm from above. Pale: its whole motion. Arrows: the torque of each motor");
-  const turns = [turnOf(26), turnOf(20)];
+  const turns = [turnOf(36), turnOf(29)]; // outside the rings of the joints
   stage.svg.append(...turns.map(({ el }) => el));
   const scale = 300 / (box[2] - box[0]);
   const px = ([x, y]) => [scale * (x - box[0]), scale * (box[3] - y)];

@@ -49,7 +49,7 @@ class TorqueTerms(CurveWidget):
     """
 
     _esm = bundle(_HERE / "terms.js")
-    _css = styles(_HERE / "terms.css")
+    _css = styles(_HERE / "stage.css", _HERE / "terms.css")
 
     moving = t.Dict(help="arms by load, friction, extents in rad", read_only=True).tag(sync=True)
 

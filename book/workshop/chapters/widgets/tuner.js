@@ -86,12 +86,13 @@ extras.push((view) => {
   const loop = model.get("loop");
   const { lengths } = loop.plant;
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
-  el.classList.add("ddlib-tuner");
+  el.classList.add("ddlib-tuner", "quiet");
+  view.tall = 215;
 
   // The arm, and time
   const far = lengths[0] + lengths[1];
-  const kinds = ["ghost", "wanted", "now"];
-  const box = [-0.06 * far, -0.82 * far, 1.05 * far, 0.36 * far];
+  const kinds = ["ghost", "wanted", "real"];
+  const box = [-0.09 * far, -0.84 * far, 1.07 * far, 0.36 * far];
   const stage = armsOf(lengths, kinds, box, "The arm from above. Pale: the arm with your previous setting");
   const end = (loop.periods - 1) * loop.step;
   const last = () => (view.now.log.stopped ?? Infinity) * view.now.seconds;
@@ -114,7 +115,7 @@ extras.push((view) => {
   legend.append(key("ghost", "your previous setting"), key("wanted", "wanted"));
   const row = make("div", { class: "time" }, clock.play, clock.el);
   const scene = make("div", { class: "scene" }, stage.svg, legend, row);
-  const first = make("div", { class: "charts first" }, ...view.charts.slice(0, 2).map((c) => c.el), scene);
+  const first = make("div", { class: "charts first" }, ...view.charts.slice(0, 2).map((c) => c.el));
   const told = make("div", { class: "told-so" }, verdict, pointer, remedy);
   const switches = make("div", { class: "controls" }, ...view.controls.querySelectorAll(".switch, .menu"));
   const names = spec.parameters.filter((p) => p.options && p.display !== "slider").map((p) => p.name);
@@ -123,7 +124,7 @@ extras.push((view) => {
   const more = make("details", { class: "more" }, summary, switches, el.querySelector(":scope > .charts"), ...el.querySelectorAll(":scope > .remark"));
   const opened = () => (more.open ||= names.some((name) => view.get(name) !== view.parameter(name).value));
   opened();
-  view.top.append(view.numbers, first, told, more);
+  view.top.append(view.numbers, first, scene, told, more);
 
   // A drag, however slow, has one setting before it.
   const grasp = () => (view.grip = "fresh");
@@ -145,8 +146,8 @@ extras.push((view) => {
     const k = time / now.seconds;
     stage.place("wanted", along(now.wanted, k));
     stage.place("ghost", along(ghost.log.q, k));
-    stage.place("now", along(now.log.q, k));
-    stage.arms.get("now").el.classList.toggle("stopped", time >= last());
+    stage.place("real", along(now.log.q, k));
+    stage.arms.get("real").el.classList.toggle("stopped", time >= last());
     for (const c of view.charts) c.point(time);
   }
 

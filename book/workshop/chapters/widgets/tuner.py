@@ -199,7 +199,7 @@ class PIDTuner(CurveWidget):
     """
 
     _esm = bundle(_HERE / "tuner.js")
-    _css = styles(_HERE / "tuner.css")
+    _css = styles(_HERE / "stage.css", _HERE / "tuner.css")
 
     before = t.Dict(help="the setting before this one, which the ghost has").tag(sync=True)
     loop = t.Dict(help="plant, modes, reference and questions", read_only=True).tag(sync=True)

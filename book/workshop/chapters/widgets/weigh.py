@@ -1,98 +1,109 @@
-"""The arm on the scales: the second moment of a gradient, added up sample by sample."""
+"""The arm and the scales: a network's inertia, added up sample by sample, against the arm's own."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import cache
 from pathlib import Path
 
 import numpy as np
+import traitlets as t
 
+from ddlib.analysis import mean_gradient
+from ddlib.learning import TorqueModel
+from ddlib.setups import JOINT_DAMPING
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.base import CurveWidget
-from ddlib.widgets.hinton import CENTRE
-from ddlib.widgets.parts.panels import Panel, Scalar
+from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.parts.parameters import Choice
-from ddlib.widgets.scripts import bundle
-from workshop.chapters.widgets.pencil import STYLE
+from ddlib.widgets.scripts import bundle, styles
+from workshop.chapters.widgets import CENTRE
+from workshop.report.pencil import moment_filters, written
 
 _HERE = Path(__file__).parent
 
-_ENTRIES = {
-    "shoulder": (0, 0),
-    "coupling": (0, 1),
-    "elbow": (1, 1),
-}  # of the mass matrix: torque, joint
-
 
 class WeighTheArm(CurveWidget):
-    """Widen the part of a window that counts, and watch its weighted area grow to an inertia.
+    """Lay a network's gradient on the scales, sample by sample; then load the arm, and write.
+
+    Of the network it is the inertia at the shoulder: half the second moment of the gradient of the
+    shoulder's torque by the shoulder's window.
 
     Parameters
     ----------
-    gradients : mapping
-        What was learnt -> mean gradient of the torques by the window, N m/rad, shape
-        ``(torque, joint, samples)``.
-    inertia : mapping
-        The same names -> mean mass matrix that belongs to it, kg m², shape (2, 2).
+    networks : mapping
+        What was learnt -> one network.
+    windows : array_like, shape (cases, joint, width)
+        Positions over which the gradient is the mean, rad.
+    own : float
+        The arm's own inertia at the shoulder, kg m².
+    inertia : callable
+        Of a load in kg: what it adds to the mean mass matrix along the motion, kg m², (2, 2).
     """
 
-    _esm, _css = bundle(_HERE / "pencil.js", _HERE / "weigh.js"), STYLE
+    _esm = bundle(_HERE / "weigh.js")
+    _css = styles(_HERE / "stage.css", _HERE / "balance.css", _HERE / "weigh.css")
 
-    def __init__(self, gradients: Mapping[str, np.ndarray], inertia: Mapping[str, np.ndarray]):
-        names = list(gradients)
-        width = np.shape(gradients[names[0]])[-1]
-        self._gradients, self._inertia = gradients, inertia
+    lengths = t.List(help="of the arm's links, m", read_only=True).tag(sync=True)
+
+    def __init__(
+        self,
+        networks: Mapping[str, TorqueModel],
+        windows,
+        own: float,
+        inertia: Callable[[float], np.ndarray],
+    ):
+        names, width = list(networks), windows.shape[-1]
         self._x = (np.arange(width) - width // 2) * LOG_STEP
-        reaches = range(width // 2 + 1)
+        filters = moment_filters(width, LOG_STEP)
+
+        @cache
+        def extra(load: int) -> np.ndarray:
+            change = np.zeros((2, 2, 3))
+            change[..., 2] = inertia(load)
+            return change
+
+        @cache
+        def gradient(learnt: str, load: int) -> np.ndarray:
+            model = networks[learnt]
+            if load:
+                model = written(model, windows, extra(load), filters, rounds=2)
+            return mean_gradient(model, windows)[0, 0]
+
+        def curves(reach, load, pencil, learnt) -> dict:
+            g = gradient(learnt, load if pencil else 0)
+            parts = self._x**2 / 2 * g
+            edge = (reach + 0.5) * LOG_STEP * 1e3
+            counted = np.abs(np.arange(width) - width // 2) <= reach
+            return {
+                "gradient": g, "parts": parts, "sum": parts[counted].sum(),
+                "own": own + extra(load)[0, 0, 2], "first": -edge, "last": edge,
+            }  # fmt: skip
+
+        shade = {"cursor": ("first", "last"), "roles": {"gradient": "network", "parts": "network"}}
         time = 1e3 * self._x
-        shade = {"cursor": ("first", "last")}
         super().__init__(
-            self._curves,
+            curves,
             [
                 Choice(
                     "reach", "Count samples up to",
-                    {k: f"±{10 * k} ms" if k else "0 ms" for k in reaches}, 0, "slider",
+                    {k: f"±{10 * k} ms" if k else "0 ms" for k in range(width // 2 + 1)},
+                    0, "slider",
                 ),
-                Choice("learnt", "Learnt", names, names[0]),
-                Choice("entry", "Inertia of the", list(_ENTRIES), "shoulder"),
+                Choice("load", "Load in the hand", {k: f"{k} kg" for k in range(6)}, 0, "slider"),
+                Choice(
+                    "pencil", "Write it into the weights",
+                    {False: "no", True: "yes"}, False, "switch",
+                ),
+                Choice("learnt", "The network learnt", names, names[0]),
             ],
             [
-                Panel(
-                    "Gradient g, N m/rad", "gradient", CENTRE, time, kind="stems", y_fit=True,
-                    **shade,
-                ),
-                Panel(
-                    "½ x² g, kg m²", "parts", CENTRE, time, kind="bars",
-                    y_fit=True, roles={"parts": "network"}, **shade,
-                ),
-                Panel(
-                    "Sum so far, kg m²",
-                    {"sum": "in the weights", "arm": "the arm itself"},
-                    "samples up to ± ms", 10.0 * np.arange(width // 2 + 1),
-                    cursor=("none", "place"), y_fit=True,
-                ),
+                Panel("Gradient g, N m/rad", "gradient", CENTRE, time, kind="stems", **shade),
+                Panel("½ x² g, kg m²", "parts", CENTRE, time, kind="bars", **shade),
             ],
-            alt="Stems: the gradient of the shoulder's torque by its window. Bars: how much "
-            "each sample adds to its second moment. A line: the sum over more and more "
-            "samples, beside the arm's own inertia.",
+            alt="Stems: the gradient of the shoulder's torque by its window. Bars: how much each "
+            "sample adds to the network's inertia. In the page, a balance holds their sum against "
+            "the arm's own inertia.",
             title="Weigh the arm",
-            scalars=[
-                Scalar("now", "Sum", "kg m²", 2),
-                Scalar("true", "The arm's own", "kg m²", 2),
-            ],
-            note="Each sample adds ½ x² g, and takes it away where g is negative. Shaded: the "
-            "samples that are added up so far.",
         )  # fmt: skip
-
-    def _curves(self, reach, learnt, entry) -> dict:
-        at, half = _ENTRIES[entry], len(self._x) // 2
-        g = self._gradients[learnt][at]
-        parts = self._x**2 / 2 * g
-        counted = (min(k, reach) for k in range(half + 1))  # none beyond the slider
-        sums = np.array([parts[half - k : half + k + 1].sum() for k in counted])
-        true, edge = self._inertia[learnt][at], (reach + 0.5) * LOG_STEP * 1e3
-        return {
-            "gradient": g, "parts": parts, "sum": sums, "arm": np.full(half + 1, true),
-            "now": sums[reach], "true": true, "first": -edge, "last": edge,
-            "none": 0.0, "place": 10.0 * reach,
-        }  # fmt: skip
+        self._keep(lengths=list(JOINT_DAMPING.arm.lengths))

@@ -1,4 +1,4 @@
-// What WeightReader (weights.py) adds to a HintonWidget: the chosen row as squares above its curve,
+// What WeightReader (weights.py) adds to its diagram (hinton.js): the chosen row as squares above its curve,
 // square over stem; and the start that leaves both, slowly, when it is subtracted.
 
 import { extras } from "ddlib/curves.js";

@@ -6,32 +6,54 @@ from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
+import traitlets as t
 from matplotlib.gridspec import GridSpec
 from matplotlib.patches import Rectangle
 
 from ddlib.analysis import roughness
-from ddlib.figures import TONES, illustrate
+from ddlib.figures import JOINTS, TONES, illustrate
 from ddlib.figures.weights import dots, hinton_on, relative_weights
 from ddlib.learning import Weights
-from ddlib.widgets.base import Panel, Scalar
-from ddlib.widgets.hinton import (
-    CENTRE,
-    JOINTS,
-    _diagram,
-    _HintonWidget,
-    unit_names,
-    weight_functions,
-)
+from ddlib.widgets.base import CurveWidget
+from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
 from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.still import START, encoded
+from workshop.chapters.widgets import CENTRE
 
 _HERE = Path(__file__).parent
 
 _MARGIN = 1.06  # of the axis over the largest weight of a row
 
 
-class WeightReader(_HintonWidget):
+def unit_names(weights: Weights) -> dict[str, str]:
+    """A network's units, outputs first: key of each -> what the page calls it.
+
+    Keys stand in readers' links and count hidden units from 0; the page counts them from 1.
+    """
+    outputs = [f"{joint} torque" for joint in JOINTS]
+    hidden = range(weights.hidden_bias.shape[-1])
+    return dict(zip(outputs, outputs)) | {f"hidden {k}": f"hidden {k + 1}" for k in hidden}
+
+
+def _rows(weights: Weights) -> np.ndarray:
+    """Weights from both windows to all units, ``(unit, joint, width)``, outputs first."""
+    return np.concatenate([weights.direct_weights, weights.hidden_weights])
+
+
+def _diagram(weights: Weights) -> np.ndarray:
+    """All weights of one network, unit by unit, as `hinton.js` draws them.
+
+    Bias, weights on top (an output's from the hidden units, a hidden unit's to the outputs), and
+    the window of each joint.
+    """
+    biases = [*weights.output_bias, *weights.hidden_bias]
+    tops = [*weights.output_weights, *weights.output_weights.T]
+    units = zip(biases, tops, _rows(weights))
+    return np.concatenate([np.concatenate([[b], u, *w]) for b, u, w in units])
+
+
+class WeightReader(CurveWidget):
     """Press a row of a Hinton diagram to see it as a curve, and subtract the random start.
 
     Parameters
@@ -47,8 +69,10 @@ class WeightReader(_HintonWidget):
         Passed on to `CurveWidget`.
     """
 
-    _esm = bundle("hinton.js", _HERE / "weights.js")
-    _css = styles("hinton.css", _HERE / "weights.css")
+    _esm = bundle(_HERE / "hinton.js", _HERE / "weights.js")
+    _css = styles(_HERE / "hinton.css", _HERE / "weights.css")
+
+    hinton = t.Dict(help="layout of the diagram", read_only=True).tag(sync=True)
 
     def __init__(
         self,
@@ -71,7 +95,7 @@ class WeightReader(_HintonWidget):
         time = np.arange(-reach, reach + 1) * half
         scales = {False: "row", True: "network"}
         self._cells = {
-            (subtract, common): _diagram(relative_weights(weights, scale, trained), reach)
+            (subtract, common): _diagram(relative_weights(weights, scale, trained))
             for subtract, weights in self._shown.items()
             for common, scale in scales.items()
         }
@@ -79,9 +103,9 @@ class WeightReader(_HintonWidget):
         rows = {name: f"the {name}'s" for name in JOINTS}
         scale_of = {False: "row by row", True: "as in the report"}
         part = {False: "as trained", True: "what training added"}
+        layout = {"units": self._names, "names": list(names.values()), "joints": list(JOINTS)}
+        self.set_trait("hinton", layout | {"outputs": len(JOINTS), "width": trained.width})
         super().__init__(
-            trained,
-            reach,
             self._curves,
             [
                 Choice("subtract", "Subtract the start", part, False, "switch"),
@@ -110,14 +134,12 @@ class WeightReader(_HintonWidget):
                 Scalar("largest", "Largest weight of the row", digits=3),
                 Scalar("roughness", "Roughness of the row (noise: 1)", digits=3),
             ],
-            largest="ever",
             **options,
         )
         self._keep(still=self._drawn())
 
     def _row(self, subtract, unit, joint) -> np.ndarray:
-        functions = weight_functions(self._shown[subtract])
-        return functions[self._names.index(unit), JOINTS.index(joint)]
+        return _rows(self._shown[subtract])[self._names.index(unit), JOINTS.index(joint)]
 
     def _curves(self, subtract, common, unit, joint) -> dict:
         both = [self._row(subtracted, unit, joint) for subtracted in (False, True)]

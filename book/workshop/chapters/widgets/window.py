@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
+from ddlib.figures import JOINTS
 from ddlib.learning import sliding_windows
 from ddlib.simulation import Recording
 from ddlib.widgets.base import CurveWidget, Panel
-from ddlib.widgets.hinton import JOINTS
 from ddlib.widgets.parts.parameters import Choice
 from ddlib.widgets.scripts import bundle, styles
 from ddlib.widgets.table import Live

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from ddlib import learning
-from ddlib.analysis import classify
-from ddlib.learning import TrainingSet, Weights, cases, default_rate, surrogate
+from ddlib.analysis import classify, gains, mean_gradient
+from ddlib.learning import TorqueModel, TrainingSet, Weights, cases, default_rate, surrogate
 from ddlib.setups import INITIAL, JOINT_DAMPING, split
 from ddlib.widgets.engine.trainer import CHECK, EPOCHS, EVERY, LEVEL, MOMENTUM, SHIFTS, WIDTH
 from workshop.report.code_hash import study
@@ -18,8 +18,10 @@ from workshop.report.code_hash import study
 _EVENTS = ("error", "direct", "hidden")
 
 
-def _page_set(scaling=(-1.0, 1.0), shifted: int | None = None) -> tuple[TrainingSet, tuple]:
-    """Training set of the page, and scaled windows and torques of trajectory 6."""
+def _page_set(
+    scaling=(-1.0, 1.0), shifted: int | None = None
+) -> tuple[TrainingSet, np.ndarray, tuple]:
+    """Training set of the page, its windows (rad), and scaled ones and torques of trajectory 6."""
     training, test = split(JOINT_DAMPING.record())
     torque = training.tau[:, training.motion]
     if shifted is not None:
@@ -29,7 +31,7 @@ def _page_set(scaling=(-1.0, 1.0), shifted: int | None = None) -> tuple[Training
     samples = torque.shape[1]
     places = np.arange(len(windows)).reshape(-1, samples)[:, ::EVERY].ravel()
     data = replace(whole, x=whole.x[places], y=whole.y[places], step=training.step)
-    return data, data.transform(*cases(test, WIDTH))
+    return data, windows[places], data.transform(*cases(test, WIDTH))
 
 
 def _events(weights: Weights, training: np.ndarray) -> np.ndarray:
@@ -40,28 +42,30 @@ def _events(weights: Weights, training: np.ndarray) -> np.ndarray:
     return np.stack([training < LEVEL, *shapes], -1)
 
 
-def _watched(weights: Weights, data: TrainingSet, test: tuple, epochs: int = EPOCHS) -> dict:
+def _watched(weights: Weights, data: TrainingSet, windows, test: tuple) -> dict:
     """Train, looking every `CHECK` epochs; what was seen of each network."""
     rate = default_rate(WIDTH) / len(data.x)
     descent = learning.Descent(weights, data.x, data.y, rate, MOMENTUM)
     spreads = data.y.std(0), test[1].std(0)
     sets = (descent.inputs, descent.targets), learning.prepare(*test)
     first = np.full((len(weights), len(_EVENTS)), np.nan)
-    for epoch in range(0, epochs + 1, CHECK):
+    for epoch in range(0, EPOCHS + 1, CHECK):
         errors = [
             np.sqrt((descent.mean_square(*s) / spread**2).mean(-1))
             for s, spread in zip(sets, spreads)
         ]
         now = descent.weights()
         first[_events(now, errors[0]) & np.isnan(first)] = epoch
-        for _ in range(CHECK if epoch < epochs else 0):
+        for _ in range(CHECK if epoch < EPOCHS else 0):
             descent.epoch()
+    gradient = mean_gradient(TorqueModel(now, data.inputs, data.outputs), windows)
     named = classify(now.hidden_weights) != "not analysable"
     return {
         **dict(zip(_EVENTS, first.T)),
         "training": errors[0],
         "test": errors[1],
         "named": named.reshape(len(weights), -1).mean(-1),
+        "inertia": gains(gradient, data.step)[:, 0, 0, 2],
     }
 
 

@@ -1,17 +1,14 @@
-// What HintonWidget (hinton.py) adds to a CurveWidget: all weights as squares, in the paper's
-// layout, and a unit (or one of its windows) that is chosen by pointer or arrow keys.
+// What WeightReader (weights.py) adds to a CurveWidget: all weights as squares, in the paper's
+// layout, and a unit's window that is chosen by pointer or arrow keys.
 
-import { extras } from "./curves.js";
-import { make, onKeys, put } from "./elements.js";
+import { extras } from "ddlib/curves.js";
+import { make, onKeys, put } from "ddlib/elements.js";
 
 const BLOB = { width: 240, height: 62, gap: 8, side: 13 }; // of a unit, and its largest square
 const CELLS = "weights of all units";
 
 function hintonOf(view) {
-  const { units, names, outputs, joints, reach, largest } = view.model.get("hinton");
-  const has = (name) => view.spec.parameters.some((p) => p.name === name);
-  const rows = has("joint") ? joints : [""]; // what is chosen within a unit
-  const samples = 2 * reach + 1;
+  const { units, names, outputs, joints, width } = view.model.get("hinton");
   const blobs = units.map((name, k) => {
     const [column, row] = [k % 2, Math.floor(k / 2)];
     const below = row ? BLOB.gap : 0; // a wider gap between outputs and hidden units
@@ -25,21 +22,18 @@ function hintonOf(view) {
   });
   const size = [2 * BLOB.width + BLOB.gap, blobs.at(-1).y + BLOB.height];
 
-  // The strip of a blob that stands for one choice: its whole, or the lines of one window.
-  const stripe = (blob, j) =>
-    rows.length > 1
-      ? { x: blob.x, y: blob.y + 24 + 18 * j, width: BLOB.width, height: 20 }
-      : { x: blob.x, y: blob.y, width: BLOB.width, height: BLOB.height };
+  // The strip of a blob that stands for one choice, the line of one window.
+  const stripe = (blob, j) => ({ x: blob.x, y: blob.y + 24 + 18 * j, width: BLOB.width, height: 20 });
   const id = (k, j) => `${view.id}-unit-${k}-${j}`;
-  const words = (k, j) => (rows[j] ? `${names[k]}, ${rows[j]}'s window` : names[k]);
+  const words = (k, j) => `${names[k]}, ${joints[j]}'s window`;
   const options = blobs.map((blob, k) =>
-    rows.map((_, j) =>
+    joints.map((_, j) =>
       make("rect", { ...stripe(blob, j), id: id(k, j), class: "option", role: "gridcell", "aria-label": words(k, j) }),
     ),
   );
   const lines = [];
   for (let k = 0; k < units.length; k += 2) {
-    rows.forEach((_, j) => {
+    joints.forEach((_, j) => {
       lines.push(make("g", { role: "row" }, ...options.slice(k, k + 2).map((cells) => cells[j])));
     });
   }
@@ -51,14 +45,11 @@ function hintonOf(view) {
   svg.append(picture, ...lines);
   put(svg, { role: "grid", "aria-label": "Weights of all units; arrow keys choose one" });
 
-  const now = () => [
-    units.indexOf(view.get("unit")),
-    rows.length > 1 ? joints.indexOf(view.get("joint")) : 0,
-  ];
+  const now = () => [units.indexOf(view.get("unit")), joints.indexOf(view.get("joint"))];
   let marked = options[0][0];
   function choose(k, j) {
     const unit = Math.min(units.length - 1, Math.max(0, k));
-    view.set({ unit: units[unit], ...(rows.length > 1 && { joint: joints[j] }) });
+    view.set({ unit: units[unit], joint: joints[j] });
   }
   function pick(event) {
     const box = picture.getBoundingClientRect();
@@ -66,7 +57,7 @@ function hintonOf(view) {
     const y = ((event.clientY - box.top) / box.height) * size[1];
     const distance = ({ x: a, y: b }) => Math.hypot(x - a - BLOB.width / 2, 4 * (y - b - BLOB.height / 2));
     const k = blobs.reduce((best, blob, i) => (distance(blob) < distance(blobs[best]) ? i : best), 0);
-    choose(k, rows.length > 1 && y > blobs[k].y + 43 ? 1 : 0);
+    choose(k, y > blobs[k].y + 43 ? 1 : 0);
   }
   svg.addEventListener("click", pick); // a tap too; a touch that scrolls the page is none
   svg.addEventListener("pointermove", (event) => {
@@ -78,18 +69,17 @@ function hintonOf(view) {
     if (!move) return false;
     const [k, j] = now();
     const column = Math.min(1, Math.max(0, (k % 2) + move[0]));
-    const last = Math.ceil(units.length / 2) * rows.length - 1;
-    const line = Math.min(last, Math.max(0, Math.floor(k / 2) * rows.length + j + move[1]));
-    choose(2 * Math.floor(line / rows.length) + column, line % rows.length);
+    const last = Math.ceil(units.length / 2) * joints.length - 1;
+    const line = Math.min(last, Math.max(0, Math.floor(k / 2) * joints.length + j + move[1]));
+    choose(2 * Math.floor(line / joints.length) + column, line % joints.length);
   });
 
-  const range = view.spec.curves.find((curve) => curve.name === CELLS);
+  const { low, high } = view.spec.curves.find((curve) => curve.name === CELLS);
+  const most = Math.max(-low, high); // of all settings
+  const pitch = Math.min(BLOB.side + 1, (BLOB.width - 8) / width);
+  const side = Math.min(BLOB.side, pitch);
   const tenth = (x) => Math.round(10 * x) / 10; // quicker than toFixed
   function paint(cells) {
-    const width = has("width") ? view.get("width") : samples;
-    const most = largest === "ever" ? Math.max(-range.low, range.high) : Math.max(...cells.map(Math.abs));
-    const pitch = Math.min(BLOB.side + 1, (BLOB.width - 8) / width);
-    const side = Math.min(BLOB.side, pitch);
     const paths = ["", ""];
     const square = (value, x, y) => {
       const a = tenth(side * Math.sqrt(Math.abs(value) / most));
@@ -100,11 +90,11 @@ function hintonOf(view) {
       square(cells[at++], x + 12, y + 13);
       const right = x + BLOB.width - 4 - (tops - 0.5) * (BLOB.side + 1);
       for (let i = 0; i < tops; i++) square(cells[at++], right + i * (BLOB.side + 1), y + 13);
-      for (let j = 0; j < joints.length; j++, at += samples) {
+      joints.forEach((_, j) => {
         for (let i = -(width >> 1); i <= width >> 1; i++) {
-          square(cells[at + reach + i], x + BLOB.width / 2 + i * pitch, y + 34 + 18 * j);
+          square(cells[at++], x + BLOB.width / 2 + i * pitch, y + 34 + 18 * j);
         }
-      }
+      });
     }
     drawn.forEach((path, i) => path.setAttribute("d", paths[i]));
   }
