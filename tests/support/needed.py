@@ -6,7 +6,7 @@ import ast
 import re
 
 MADE = re.compile(  # by modules: calls that make one
-    r"widgets\.|chapter\.((hidden_torque|acceleration_by_window)$|[A-Z]+[a-z])"
+    r"widgets\.|chapter\.((hidden_torque|acceleration_by_window|weigh|turn)$|[A-Z]+[a-z])"
 )
 
 
