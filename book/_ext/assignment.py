@@ -431,6 +431,10 @@ def write(lesson: str, course: Path, students: Iterable[str] = (), keys: bool = 
             nbformat.write(own_copy(release(course, name), student), to / f"{name}.ipynb")
             made.append(to)
         (course / "keys").mkdir(exist_ok=True)
+        if students:
+            own = {s: settings_of(name, variant_of(name, s)) for s in students}
+            lines = (f"{s}: {', '.join(map(' = '.join, own[s].items()))}\n" for s in students)
+            (course / "keys" / f"{name}-settings.txt").write_text("".join(lines), "utf-8")
         for variant in {variant_of(name, s) for s in students} or {0} if keys else ():
             to = course / "keys" / f"{name}{f'-variant-{variant}' if variant else ''}.md"
             to.write_text(key(known[name], variant), "utf-8")

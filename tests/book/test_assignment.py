@@ -326,6 +326,8 @@ def test_nbgrader_from_release_to_export(tmp_path):
     named = {name: {cell.id: cell for cell in made[name].cells} for name in NAMES}
     settings = solved.settings_of("feedback", solved.variant_of("feedback", "ada"))
     assert f"period = {settings['period']} " in named["ada"]["settings"].source
+    listed = (course / "keys" / "feedback-settings.txt").read_text("utf-8").splitlines()
+    assert listed[0].startswith("ada: ") and f"period = {settings['period']}" in listed[0]
     answers = [c for c in made["ada"].cells if is_starter(c)]
     for cell, code in zip(answers, solutions):
         cell.source = code
