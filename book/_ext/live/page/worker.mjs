@@ -31,9 +31,10 @@ self.navigator.locks?.request(life, () => {
   return new Promise(() => {});
 });
 
-const MODULES = ["names.py", "kernel.py"];
 // Modules of this site that stand in for others.
 const INSTEAD = ["torch", "anywidget", "ipywidgets", "IPython"];
+const instead = (module) => `instead/${module}.py`;
+const MODULES = ["names.py", "kernel.py", ...INSTEAD.map(instead)];
 let python, kernel, packages;
 
 async function asked(path) {
@@ -76,7 +77,7 @@ async function start({ start: data, ahead }) {
     _loadSnapshot: started,
   });
   await load(["numpy", "ddlib"]);
-  python.FS.mkdirTree("/book/data");
+  for (const folder of ["data", "instead"]) python.FS.mkdirTree(`/book/${folder}`);
   python.FS.chdir("/book"); // where a notebook of the book runs
   const content = await files;
   [...MODULES, ...data].forEach((path, k) =>
@@ -122,7 +123,7 @@ async function get(module) {
   if (wanted.has(module)) return false;
   wanted.add(module);
   if (INSTEAD.includes(module)) {
-    python.FS.writeFile(`/book/${module}.py`, new Uint8Array(await file(`instead/${module}.py`)));
+    python.FS.rename(`/book/${instead(module)}`, `/book/${module}.py`);
     return true;
   }
   const name = Object.keys(packages).find((key) => packages[key].imports.includes(module));
