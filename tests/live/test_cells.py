@@ -44,6 +44,7 @@ def test_packages_come_in_the_order_in_which_cells_import_them():
             ("control", ["scipy", "matplotlib"]),
             ("matplotlib", ["numpy"]),
             ("sympy", []),
+            ("yaml", []),
         )
     }
     sources = (
@@ -52,7 +53,7 @@ def test_packages_come_in_the_order_in_which_cells_import_them():
         "import sympy",
     )
     cells = [{"source": source} for source in sources]
-    assert imported(cells, packages) == ["matplotlib", "scipy", "control", "sympy"]
+    assert imported(cells, packages) == ["matplotlib", "scipy", "control", "sympy", "yaml"]
 
 
 def test_what_a_page_lacks_of_pytorch_is_named():

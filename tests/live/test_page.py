@@ -243,6 +243,33 @@ def test_where_no_memory_is_shared_stop_ends_python_and_says_so(browser, site):
 
 @pytest.mark.browser
 @pytest.mark.slow
+@pytest.mark.chromium  # of the two drivers, one can cut a page off
+def test_a_page_runs_on_without_a_network(browser, site):
+    """A package that nobody foresaw is asked for again when there is one."""
+    context = browser.new_context()
+    tab = context.new_page()
+    tab.goto(f"{site}/book/feedback.html")
+    tab.get_by_role("button", name="Run this page").click()
+    tab.locator(".live-output svg").first.wait_for(timeout=300_000)
+    tab.wait_for_load_state("networkidle")
+    context.set_offline(True)
+    tab.locator(IDLE).wait_for(timeout=300_000)
+    assert not tab.locator(".live-error, .live-warning, .live-note").all_inner_texts()
+    field, output = tab.get_by_role("textbox").first, tab.locator(".live-output").first
+    for source, told in (
+        ("import pandas", "did not come whole (pandas"),
+        ("print(6 * 7)", "42"),
+        ("import pandas\nprint(pandas.NA)", "<NA>"),
+    ):
+        field.fill(source)
+        field.press("Control+Enter")
+        output.get_by_text(told).wait_for(timeout=60_000)
+        context.set_offline(source != "print(6 * 7)")
+    context.close()
+
+
+@pytest.mark.browser
+@pytest.mark.slow
 @pytest.mark.chromium
 def test_the_script_that_isolates_reaches_this_site_alone_and_can_be_removed(browser, site):
     tab = browser.new_page()

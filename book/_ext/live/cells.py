@@ -11,7 +11,7 @@ from answers import exercises, is_check, is_open, is_starter
 from lessons import CHANGE_THIS
 
 from live.handles import handles
-from live.packages import FIRST, PAGE
+from live.packages import FIRST, OURS, PAGE
 from live.page.names import names
 
 
@@ -84,7 +84,8 @@ def live_cells(notebook) -> list[dict]:
 def imported(cells: list[dict], packages: dict) -> list[str]:
     """Packages that cells import, in their order, each after those that it depends on.
 
-    Without what comes before the first cell; `figures` draw with Matplotlib.
+    Without what comes before the first cell; `figures` draw with Matplotlib. Then those that
+    modules of ours import for them: a page runs on where the network ends.
     """
     roots = [name for cell in cells for name in _imports(cell["source"])]
     order: list[str] = []
@@ -95,7 +96,7 @@ def imported(cells: list[dict], packages: dict) -> list[str]:
                 add(other)
             order.append(name)
 
-    for root in roots:
+    for root in [*roots, *OURS]:
         for name in [name for name, entry in packages.items() if root in entry["imports"]]:
             add(name)
     return [name for name in order if name not in FIRST]

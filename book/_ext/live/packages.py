@@ -54,6 +54,13 @@ PURE = {  # from this environment: what each depends on, and what is imported of
 FIRST = ("numpy", "ddlib", "lazy-loader")  # before the first cell
 LATER = {"fonttools"}  # what Matplotlib takes for a PDF alone: it comes if a cell saves one
 ROOMS = "workshop"  # of the book, and Part IV's
+OURS = (
+    "control",
+    "joblib",
+    "yaml",
+    "ddlib.widgets",
+    ROOMS,
+)  # what modules of ours import, any time
 WIDGETS = "ddlib/widgets"  # a wheel of their own: few cells show one
 STILL = f"{WIDGETS}/still.py"  # draws what a page does not show
 

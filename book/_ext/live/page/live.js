@@ -753,6 +753,7 @@
   const isolated = globalThis.crossOriginIsolated && globalThis.SharedArrayBuffer;
 
   function boot() {
+    import(new URL("widgets.mjs", home)).catch(() => {}); // there when a widget comes, with no network too
     worker = new Worker(new URL("worker.mjs", home), { type: "module" });
     ready = foreign = false;
     loaded = turns = 0;

@@ -31,9 +31,10 @@ self.navigator.locks?.request(life, () => {
   return new Promise(() => {});
 });
 
-const MODULES = ["names.py", "kernel.py"];
 // Modules of this site that stand in for others.
 const INSTEAD = ["torch", "anywidget", "ipywidgets", "IPython"];
+const instead = (module) => `instead/${module}.py`;
+const MODULES = ["names.py", "kernel.py", ...INSTEAD.map(instead)];
 let python, kernel, packages;
 
 async function asked(path) {
@@ -76,7 +77,7 @@ async function start({ start: data, ahead }) {
     _loadSnapshot: started,
   });
   await load(["numpy", "ddlib"]);
-  python.FS.mkdirTree("/book/data");
+  for (const folder of ["data", "instead"]) python.FS.mkdirTree(`/book/${folder}`);
   python.FS.chdir("/book"); // where a notebook of the book runs
   const content = await files;
   [...MODULES, ...data].forEach((path, k) =>
@@ -118,17 +119,27 @@ async function load(names) {
 
 // Get the package in which a module lies, once; whether there is one.
 const wanted = new Set();
+const refused = new Set(); // those that did not come, until the next cell
+let now; // the cell that runs
 async function get(module) {
-  if (wanted.has(module)) return false;
-  wanted.add(module);
+  if (wanted.has(module) || refused.has(module)) return false;
   if (INSTEAD.includes(module)) {
-    python.FS.writeFile(`/book/${module}.py`, new Uint8Array(await file(`instead/${module}.py`)));
+    wanted.add(module);
+    python.FS.rename(`/book/${instead(module)}`, `/book/${module}.py`);
     return true;
   }
   const name = Object.keys(packages).find((key) => packages[key].imports.includes(module));
   if (!name) return false;
-  await load([name]);
-  return true;
+  try {
+    await load([name]);
+    wanted.add(module);
+    return true;
+  } catch (error) {
+    // there is no network: the cell says so, and Python goes on
+    refused.add(module);
+    tell({ run: now, kind: "warning", text: `${error.message}\n` });
+    return false;
+  }
 }
 
 // One message after the other, also where Python waits for a package.
@@ -154,6 +165,8 @@ async function act(message) {
       return tell({ ready: true });
     }
     if (!run) return pick(message.picked);
+    now = run;
+    refused.clear();
     const began = performance.now();
     const show = (kind, text) => tell({ run, kind, text });
     const ok = await kernel.run.callKwargs(source, run, show, get, {

@@ -7,6 +7,8 @@ import types
 
 import kernel
 
+version_info = (9, 0)  # Matplotlib asks, before it draws for an older one
+
 
 def get_ipython():
     """None: there is no shell."""
