@@ -38,7 +38,8 @@ def test_rows_after_a_step_are_judged_with_and_without_the_start(capsys):
     rng = np.random.default_rng(1)
     start, added = rng.normal(size=(6, 2, WIDTH)), 1e-3 * np.ones((6, 2, 1)) * K
     networks = {
-        e: [SimpleNamespace(direct_weights=w[:2], hidden_weights=w)] for e, w in enumerate((start, start + added))
+        e: [SimpleNamespace(direct_weights=w[:2], hidden_weights=w)]
+        for e, w in enumerate((start, start + added))
     }
     rough = np.median(hinton_diagrams.roughness((start + added).reshape(-1, WIDTH)))
     answers = {(rough, 0.0): "Right: training writes", (0.0, rough): "Wrong: the other way round",
