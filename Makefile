@@ -119,10 +119,8 @@ unit: $(TESTED)
 	$(PYTEST) -n $(JOBS) --dist worksteal $(SLOWEST) -m "not built and not browser" \
 	  -k "not (test_walk and cells_run)"
 
-notebooks: $(TESTED)  ## every notebook in a fresh process, warnings are errors
-	@echo "==> Every notebook in a fresh process, warnings are errors"
-	PYTHONPATH="$$PWD/book" PYTHONWARNINGS="error:::__main__" \
-	  $(PYTEST) -n $(JOBS) --nbmake --nbmake-timeout=600 $(NOTEBOOKS)
+notebooks: $(TESTED)  ## all cells of every notebook, warnings are errors
+	PYTHONWARNINGS="error:::__main__" $(PYTEST) -n $(JOBS) -k all_cells_run tests/book/test_walk.py
 
 FOREIGN ?=
 foreign: $(TESTED)  ## notebooks and claims on machines that round otherwise

@@ -49,12 +49,15 @@ def interleaved(repeats: int, **works: Callable[[], object]) -> dict[str, dict[s
     }
 
 
+def committed() -> dict[tuple[str, str], dict]:
+    """The rows of the last committed run, by group and what was measured."""
+    rows = json.loads(COMMITTED.read_text(encoding="utf-8"))["rows"] if COMMITTED.is_file() else []
+    return {(row["group"], row["what"]): row for row in rows}
+
+
 def goal(group: str, what: str) -> float:
     """The least ratio of a row: ahead of the peer, and no third below the last committed ratio."""
-    rows = json.loads(COMMITTED.read_text(encoding="utf-8"))["rows"] if COMMITTED.is_file() else []
-    ratios = [row["ratio"] for row in rows if (row["group"], row["what"]) == (group, what)
-              if "ratio" in row]  # fmt: skip
-    return max([AHEAD, *(KEPT * known for known in ratios)])
+    return max(AHEAD, KEPT * committed().get((group, what), {}).get("ratio", 0.0))
 
 
 def ratio(group: str, what: str, ours: tuple, other: tuple, *, judged=True, **details) -> dict:

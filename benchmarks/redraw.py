@@ -109,7 +109,8 @@ def rows() -> list[dict]:
     Returns
     -------
     list of dict
-        ``what``, ``median, ms`` and ``p95, ms``, which is to keep below `MOST`.
+        ``what``, ``median, ms`` and ``p95, ms``, which is to keep below `MOST`; of a widget with
+        nothing to move in these ways ``what`` and why it is ``not measured``.
 
     Raises
     ------
@@ -173,7 +174,7 @@ def opening(browser, url: str) -> float:
 def of_widget(widget, name: str, moves: int = MOVES) -> list[dict]:
     """The rows of one mounted widget, a Playwright locator of an open page."""
     widget.scroll_into_view_if_needed()
-    measured = []
+    measured: list[dict] = []
     for kind, selector in KINDS.items():
         if not widget.locator(selector).locator("visible=true").count():
             continue
@@ -186,9 +187,9 @@ def of_widget(widget, name: str, moves: int = MOVES) -> list[dict]:
                 "p95, ms": float(np.percentile(times, 95)),
             }
         )
-    return measured
+    return measured or [{"what": f"redraw, {name}", "not measured": "no slider or drawing"}]
 
 
 if __name__ == "__main__":
     for row in rows():
-        print(f"{row['what']:50s} {row['median, ms']:6.1f} {row['p95, ms']:6.1f} ms", flush=True)
+        print(*(f"{x:8.1f}" if isinstance(x, float) else x for x in row.values()), flush=True)

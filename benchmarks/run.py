@@ -22,7 +22,7 @@ from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 
-from measure import memory_row, met, not_measured, quantity
+from measure import committed, memory_row, met, not_measured, quantity
 
 from ddlib.setups import WINDOWS
 from ddlib.tables import significant
@@ -58,7 +58,12 @@ def redraw() -> list[dict]:
         rows, openings = module.rows(), module.openings()
     except (FileNotFoundError, RuntimeError) as error:  # no browser, no built pages
         return [not_measured(group, "all widgets", str(error))]
-    moves = [quantity(group, r["what"], r["p95, ms"], "ms", module.MOST) for r in rows]
+    moves = [
+        quantity(group, r["what"], r["p95, ms"], "ms", module.MOST)
+        if "p95, ms" in r
+        else not_measured(group, r["what"], r["not measured"])
+        for r in rows
+    ]
     group = "Opening a page until its widgets answer, median"
     return moves + [
         quantity(group, r["what"], r["median, s"], "s", module.USABLE) for r in openings
@@ -136,6 +141,8 @@ def main() -> None:
         sys.exit(f"failed: {', '.join(failed)}; nothing is written")
     if options.parts:
         return
+    for group, what in committed().keys() - {(row["group"], row["what"]) for row in rows}:
+        print(f"{group}: {what}: measured last time, and no more")
     now = datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d")
     made_by = {**results.stamp(seconds=time.monotonic() - started), "date": now, **here}
     results.write_json(results.FOLDER / "benchmarks.json", {"made by": made_by, "rows": rows})

@@ -207,6 +207,7 @@ def test_what_follows_gives_what_running_all_gives(reader, cells, changes):
 @pytest.mark.browser
 def test_all_that_follows_stays_marked_until_it_ran(reader):
     reader(["a = 1", "b = a", "print(b)"])
+    reader.tab.get_by_role("link", name="change a number").click()
     reader.tab.get_by_role("textbox").first.fill("a = 2")
     said = reader.tab.locator(".live-mark")
     behind = "May show what came before your change."

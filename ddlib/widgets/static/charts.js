@@ -134,6 +134,7 @@ export function chart(view, panel) {
     bottom: () => bottom,
     left: () => left,
     right: () => right,
+    base: () => base,
     across: (curve, i) => short(xs[i] + (curve.kind === "line" ? 0 : shiftOf(curve)[0])),
     place: (curve, i) => y.place(log ? Math.max(valueOf(curve, i), low) : valueOf(curve, i)),
     say: (text) => view.say(text),

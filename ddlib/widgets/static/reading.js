@@ -12,7 +12,8 @@ export function unitOf(label) {
 }
 
 // `plot` has: el, svg, panel, curves, samples (places in px), top(), bottom(), left(), right(),
-// text(curve, i) and place(curve, i) of a value, in words and in px, and say(text).
+// base() of stems and bars, text(curve, i) and place(curve, i) of a value, in words and in px,
+// and say(text).
 export function readerOf(plot) {
   const { el, svg, panel, curves } = plot;
   const [quantity, unit] = unitOf(panel.x_label);
@@ -51,13 +52,35 @@ export function readerOf(plot) {
     write(where, nameOf(index));
     marks.setAttribute("visibility", "visible");
     box.hidden = false;
-    // away from what is read
-    const right = x < (plot.left() + plot.right()) / 2;
-    box.style.left = right ? "auto" : `${plot.left() + 6}px`;
-    box.style.right = right ? "0" : "auto";
-    box.style.top = `${Math.round(svg.getBoundingClientRect().top - el.getBoundingClientRect().top)}px`;
+    stand(x);
     const told = curves.map((curve, k) => `${curves.length > 1 ? `${curve.legend} ` : ""}${outputs[k].textContent}`);
     return `${where.textContent}: ${told.join(", ")}`;
+  }
+  // The box stands beside what is read, where it covers least of the curves.
+  function stand(x) {
+    const { width, height } = box.getBoundingClientRect();
+    const [left, right] = [plot.left() + 6, plot.right() - width];
+    const far = x < (plot.left() + plot.right()) / 2 ? [right, left] : [left, right];
+    const away = (a) => a >= left && a <= right && (x < a - 8 || x > a + width + 8);
+    const free = [...far, x - 10 - width, x + 10].filter(away);
+    const drawn = curves.flatMap((curve) =>
+      plot.samples().map((at, i) => {
+        const y = plot.place(curve, i);
+        const foot = curve.kind === "line" ? y : plot.base();
+        return [at, Math.min(y, foot), Math.max(y, foot)];
+      }),
+    );
+    const covered = ([a, b]) => {
+      const under = ([at, top, foot]) => at > a && at < a + width && top < b + height && foot > b;
+      return drawn.filter(under).length;
+    };
+    const levels = [plot.top(), plot.bottom() - height];
+    const places = (free.length ? free : far).flatMap((a) => levels.map((b) => [a, b]));
+    const counts = places.map(covered);
+    const [across, down] = places[counts.indexOf(Math.min(...counts))];
+    const top = svg.getBoundingClientRect().top - el.getBoundingClientRect().top;
+    box.style.left = `${across}px`;
+    box.style.top = `${Math.round(top + down)}px`;
   }
   function hide() {
     index = null;

@@ -303,8 +303,8 @@ function build({ model, el }) {
   }
 
   // Controls
-  const guesses = ["The error is small", "Direct weights measure acceleration", "A hidden filter has a name"];
-  const guessed = guesses.map((text, k) =>
+  const labels = [`Error below ${spec.level}`, "Direct weights measure acceleration", "A hidden filter has a name"];
+  const guessed = labels.map((text, k) =>
     buttonOf(text, () => {
       state.guess = String(k);
       go();
@@ -379,7 +379,6 @@ function build({ model, el }) {
   const [inside, error6] = [make("b"), make("b")];
   const sums = { "Inertia in the network, M₁₁": inside, [`RMSS on trajectory ${spec.runs}`]: error6 };
   const weighed = make("div", { class: "weighed" }, ...Object.entries(sums).map(([text, value]) => make("div", {}, make("span", {}, text), value)));
-  const labels = [`Error below ${spec.level}`, "Direct weights measure acceleration", "A hidden filter has a name"];
   const events = labels.map((text) => ({ text, output: make("dd") }));
   const list = make("dl", { class: "events" }, ...events.map(({ text, output }) => make("div", {}, make("dt", {}, text), output)));
   const units = unitSheet(spec);

@@ -108,6 +108,14 @@
     status.textContent = text;
     status.classList.toggle("live-long", text.length > 40);
   };
+  // The numbers to change may be some screens below: the state leads there.
+  function invite() {
+    const first = cells.find((c) => c.handles) ?? cells.find((c) => c.area);
+    const link = make("a", { href: `#${first.el.closest("section").id}` }, "change a number");
+    link.addEventListener("click", () => setTimeout(() => say(calm("ready"))));
+    say("ready: now ");
+    status.append(link);
+  }
   const calm = (text) => [text, blocked && "your changes last until you leave"].filter(Boolean).join(": ");
   // What the button does follows what there is to do.
   let act = () => start();
@@ -942,8 +950,9 @@
     mark();
     ran += !cell.quiet;
     if (!waiting.size) {
-      const first = ran === cells.length && !stale ? "ready: now change a number" : upToDate();
-      say(cell.failed ? `${cell.stopping ? "stopped" : "an error"} in ${cell.name}` : first);
+      if (cell.failed) say(`${cell.stopping ? "stopped" : "an error"} in ${cell.name}`);
+      else if (ran === cells.length && !stale) invite();
+      else say(upToDate());
       ran = 0;
     }
     next();

@@ -149,7 +149,7 @@ function build({ model, el }) {
     at.strip = field(84, narrow ? 14 : RISE);
     at.wire = field(90);
     at.bands = bands.map(() => field(48));
-    const high = y + (narrow ? 24 : 36);
+    const high = y + (narrow ? 24 : 48);
     put(svg, { width: wide, height: high, viewBox: `0 0 ${wide} ${high}` });
     at.axis = y + 18;
     put(hint, { x: (at.x0 + at.x1) / 2, y: at.bands[1].top - 4 });
@@ -310,8 +310,8 @@ function build({ model, el }) {
     if (get("fold") < 1) return "Take the strip by its right edge and fold it over. By keyboard: arrow keys on the round handles.";
     if (moment >= 0) {
       const { odd, even, constant } = played;
-      const leak = largest(constant.got) > 0.1 * highest ? " The constant lets the position leak in." : "";
-      return `Dashed: the joint’s speed and its acceleration, each times a number. They explain ${share(odd.told)} of the odd jar and ${share(even.told)} of the even jar.${leak}`;
+      const leak = largest(constant.got) > 0.1 * highest ? " The constant lets position leak in." : "";
+      return `Dashed: the joint’s speed and acceleration, each times a number. They explain ${share(odd.told)} of the odd jar and ${share(even.told)} of the even jar.${leak}`;
     }
     if (!get("lift") && !get("tilt") && !get("bend")) return "What agrees with its mirror image is the even half, what opposes it the odd half. Now move the wire.";
     const moved = Object.keys(WIRE).filter((name) => Math.abs(get(name)) > 0.02 * reach[name]);
