@@ -133,7 +133,7 @@ export function editor(attributes, page) {
     builtins,
     look,
     EditorView.editorAttributes.of({ class: `${name} highlight` }),
-    EditorView.contentAttributes.of({ ...own, class: "n" }),
+    EditorView.contentAttributes.of({ ...own, class: "n", tabindex: "0" }), // a place to scroll from
     // what is typed is not behind the header and the handles
     EditorView.scrollHandler.of((_, __, how) => void Object.assign(how, { xMargin: 14, yMargin: 144 })),
     EditorView.updateListener.of(written),
