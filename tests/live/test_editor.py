@@ -114,13 +114,15 @@ def test_a_reader_types(reader):
             tab.wait_for_timeout(200)  # what has just come is not taken: it may be by mistake
             tab.keyboard.press("Tab")
 
+    search = "(event) => event.key === '/' && event.preventDefault()"  # Sphinx's key for it
+    tab.evaluate(f"() => document.addEventListener('keydown', {search})")
     focused = "() => document.activeElement.getAttribute('aria-label')"
     above.focus()
     for label in ("Run: cell 1", "Run to here: all cells down to cell 1", "Code of cell 2"):
         tab.keyboard.press("Tab")  # passed through, a field lets go
         assert tab.evaluate(focused) == label
     tab.keyboard.press("Control+End")
-    typed("\nfor k in range(3")
+    typed("\nfor k in range(6 / 2")
     tab.keyboard.press("End")  # the bracket was closed
     typed(":\nif k:\narm", "armcell 1", "Armcell 1")
     typed(".")
@@ -128,8 +130,8 @@ def test_a_reader_types(reader):
     typed("\npass\n")
     tab.keyboard.press("Shift+Tab")
     typed("arm.slow.\n")
-    wanted = "a = 1\nfor k in range(3):\n    if k:\n        arm.mass\n        pass\n    arm.slow.\n"
-    assert code(field).rstrip(" ") == wanted
+    wanted = "a = 1\nfor k in range(6 / 2):\n    if k:\n        arm.mass\n        pass\n    arm.slow."
+    assert code(field).rstrip() == wanted
     tab.keyboard.press("Escape")
     tab.keyboard.press("Tab")
     assert tab.evaluate(focused) == "Run: cell 2"

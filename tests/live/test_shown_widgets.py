@@ -72,11 +72,11 @@ def test_what_follows_a_drag_leaves_it(browser, site):
     tab = browser.new_page(viewport={"width": 1000, "height": 900})
     tab.on("dialog", lambda dialog: dialog.accept())
     tab.goto(f"{site}/{PAGE}.html")
+    tab.get_by_role("button", name="Run this page").click()
+    tab.get_by_role("button", name="Stop").click()  # the page was loaded anew
     book = '<div class="cell_output"><div class="ddlib-widget" id="book">of the book</div></div>'
     add = f"(el) => el.insertAdjacentHTML('beforeend', `{book}`)"
-    tab.locator("[data-live]").first.evaluate(add)
-    tab.get_by_role("button", name="Run this page").click()
-    tab.get_by_role("button", name="Stop").click()
+    tab.locator(".cell[data-live]").first.evaluate(add)
     code = [
         PICKER,
         "at = picker.extents_deg\nprint(*at)",

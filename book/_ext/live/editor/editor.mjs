@@ -146,5 +146,9 @@ export function editor(attributes, page) {
   view.dom.setRangeText = (insert, from, to) =>
     view.dispatch({ changes: { from, to, insert }, userEvent: moved });
   view.dom.value = "";
+  // A letter is written here, whatever it means to the page: "/" would open its search.
+  view.dom.addEventListener("keydown", (event) => {
+    if (event.key.length === 1 && !event.ctrlKey && !event.metaKey) event.stopPropagation();
+  });
   return view.dom;
 }

@@ -342,7 +342,8 @@
     const check = cell.kind === "check";
     const run = () => {
       accept(cell);
-      enqueue(withCheck(number));
+      const answer = check && cells[number - 1]; // as it stands now
+      enqueue(answer && isBehind(answer) ? [answer, cell] : withCheck(number));
     };
     tools.append(
       button(check ? "Check" : "Run", `${check ? "Check the answer" : "Run"}: ${cell.name}`, run),
@@ -522,13 +523,16 @@
   function followUp() {
     clearTimeout(timer);
     if (!isOn()) return; // Python is not asked for yet
-    const first = cells.filter((c) => !c.needs && (text(c) !== c.shown || c.stale || c.failed));
+    const first = cells.filter((c) => !c.needs && isBehind(c));
     const graph = follow.graph(cells);
     const later = follow.after(cells, graph, first.map((c) => c.place));
     if (running && (first.includes(running) || later.has(running.place))) cancel();
     else drop();
     if (first.length) enqueue(first, true);
   }
+
+  // What is shown is not what the code gives.
+  const isBehind = (cell) => text(cell) !== cell.shown || cell.stale || cell.failed;
 
   // An answer is judged as soon as it has run.
   const withCheck = (number) => {
@@ -1081,7 +1085,7 @@
       if (isolated || sessionStorage.getItem(AGAIN)) return false;
       await navigator.serviceWorker.register(`${ROOT}isolate.js`);
       await Promise.race([navigator.serviceWorker.ready, new Promise((_, no) => setTimeout(no, 3000))]);
-      sessionStorage.setItem(AGAIN, "1");
+      sessionStorage.setItem(AGAIN, scrollY);
       location.reload();
       return true;
     } catch {
@@ -1089,7 +1093,11 @@
     }
   }
   try {
-    if (sessionStorage.getItem(AGAIN)) start().then(() => sessionStorage.removeItem(AGAIN));
+    const place = sessionStorage.getItem(AGAIN);
+    if (place) {
+      start().then(() => sessionStorage.removeItem(AGAIN));
+      addEventListener("load", () => scrollTo({ top: place, behavior: "instant" }));
+    }
   } catch {
     // there is no such storage
   }
