@@ -122,7 +122,7 @@ def test_a_reader_types(reader):
         tab.keyboard.press("Tab")  # passed through, a field lets go
         assert tab.evaluate(focused) == label
     tab.keyboard.press("Control+End")
-    typed("\nfor k in range(6 / 2")
+    typed("\nfor k in range(6/2")
     tab.keyboard.press("End")  # the bracket was closed
     typed(":\nif k:\narm", "armcell 1", "Armcell 1")
     typed(".")
@@ -130,7 +130,7 @@ def test_a_reader_types(reader):
     typed("\npass\n")
     tab.keyboard.press("Shift+Tab")
     typed("arm.slow.\n")
-    wanted = "a = 1\nfor k in range(6 / 2):\n    if k:\n        arm.mass\n        pass\n    arm.slow."
+    wanted = "a = 1\nfor k in range(6/2):\n    if k:\n        arm.mass\n        pass\n    arm.slow."
     assert code(field).rstrip() == wanted
     tab.keyboard.press("Escape")
     tab.keyboard.press("Tab")
