@@ -43,7 +43,8 @@ FILES = {
     "SHA256SUMS": ("", "checksums: `sha256sum -c SHA256SUMS`"),
 }  # fmt: skip
 """What a release holds (`*` is its version), where that is made below `_build`, what it is for."""
-BESIDE = (".zenodo.json", "paper/paper.md", "paper/metadata.yaml")
+BESIDE = (".zenodo.json", "paper/paper.md", "paper/metadata.yaml", "LICENSE", "_config.yml",
+          "book/cite-reuse-report.md")  # fmt: skip
 """What names the authors beside the citation."""
 
 

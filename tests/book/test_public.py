@@ -146,6 +146,11 @@ def test_a_release_needs_tag_citation_and_changelog_to_agree(tagged):
     assert "no tag v1.2.0" in " ".join(release.disagreements(tagged))
 
 
+def test_a_release_asks_wherever_a_group_stands_for_its_people():
+    told = release.git(ROOT, "grep", "-il", "the ddlib authors", "--", ":!tests")
+    assert set(told.splitlines()) <= {"CITATION.cff", *release.BESIDE}
+
+
 def test_pages_of_a_release_name_it_and_link_the_newest(tagged, monkeypatch):
     monkeypatch.delenv("DDLIB_SITE", raising=False)
     edition = dd_cite.edition.__wrapped__
