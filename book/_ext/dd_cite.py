@@ -29,6 +29,11 @@ def entry(kind: str, key: str, fields: dict[str, str]) -> str:
     return f"@{kind}{{{key},\n{lines}}}"
 
 
+def names(authors: list[dict]) -> list[str]:
+    """Authors as one writes them."""
+    return [a.get("name") or f"{a['given-names']} {a['family-names']}" for a in authors]
+
+
 def people(authors: list[dict]) -> str:
     """Authors as BibTeX has them; a name of a group keeps its words together."""
     named = (

@@ -8,6 +8,7 @@ from __future__ import annotations
 import shutil
 import sys
 import zipfile
+from datetime import date
 from html import escape
 from pathlib import Path
 from typing import NamedTuple
@@ -16,8 +17,11 @@ from xml.etree import ElementTree
 
 import pdf
 from offers import offer
-from pdf import ROOT, TITLE, chromium, contents, taken
+from pdf import AUTHORS, CITED, ROOT, TITLE, chromium, contents, taken
+from release import git
 from tqdm import tqdm
+
+import ddlib
 
 STAMP = (1988, 8, 1, 0, 0, 0)  # the same bytes from the same pages
 CONTAINER = """<?xml version="1.0"?>
@@ -113,9 +117,9 @@ def make(found: list[dict], path: Path) -> None:
     nav = pdf.template("nav.xhtml").render(pages=pages)
     texts = {f"{made.name}.xhtml": page(title=made.title, body=made.body) for made in pages}
     texts["look.css"] = (pdf.HERE / "epub.css").read_text(encoding="utf-8")
-    texts["content.opf"] = pdf.template("content.opf").render(
-        title=TITLE, pages=pages, images=images
-    )
+    day = git(ROOT, "log", "-1", "--format=%cs") or CITED.get("date-released", date.today())
+    about = {"title": TITLE, "authors": AUTHORS, "version": ddlib.__version__, "day": day}
+    texts["content.opf"] = pdf.template("content.opf").render(**about, pages=pages, images=images)
     texts["nav.xhtml"] = page(title="Contents", body=nav)
     new = path.with_suffix(".new")
     with zipfile.ZipFile(new, "w") as archive:

@@ -18,6 +18,8 @@ from pathlib import Path
 
 sys.path.append(str(Path(__file__).parents[2] / "tests" / "support"))  # how a browser is found
 import chromium
+import yaml
+from dd_cite import FILE, names
 from dd_public import repository, site
 from jinja2 import Environment, FileSystemLoader, Template
 from lessons import parts, with_below
@@ -30,7 +32,8 @@ AHEAD = ("book/index",)
 BEHIND = ("book/use-it-on-your-arm", "book/notation", "book/glossary", "book/bibliography")
 LEDGER = ("book/ledger", "book/provenance", "book/status", "book/glossary", "book/bibliography")
 UNANNOUNCED = ("Before you start", "At hand")  # parts without a page of their own name
-TITLE = "Learning the Dynamics of a Direct-Drive Arm"
+CITED = yaml.safe_load((ROOT / FILE).read_text(encoding="utf-8"))
+TITLE, AUTHORS = CITED["title"], names(CITED["authors"])
 VOLUMES = {"walk": "The walk", "evidence": "The evidence"}
 WORDS = ("acceleration filter", "velocity filter", "position filter", "jerk filter", "null",
          "mean gradient", "moment", "two-link arm", "inverse dynamics", "mass matrix")  # fmt: skip
@@ -95,6 +98,7 @@ def joined(volume: str, found: list[dict]) -> str:
     """A volume as one HTML document; three zeros hold the places of its page numbers."""
     return template("volume.html").render(
         title=TITLE,
+        authors=AUTHORS,
         name=VOLUMES[volume],
         address=site(repository()) if repository() else "",
         styles=dict.fromkeys(style for chapter in found for style in chapter["styles"]),
@@ -179,7 +183,7 @@ def make(built: Path, folder: Path, volume: str, browser) -> Path:
             writer = PdfWriter(clone_from=io.BytesIO(printed(page)))
         titled(writer.root_object["/Outlines"].get_object().get("/First"), headings)
         writer.add_metadata({"/Title": f"{TITLE}: {VOLUMES[volume].lower()}",
-                             "/Author": "The ddlib authors"})  # fmt: skip
+                             "/Author": ", ".join(AUTHORS)})  # fmt: skip
         new, path = folder / f".{volume}.pdf", folder / f"{volume}.pdf"
         writer.write(new)
         new.rename(path)

@@ -1,4 +1,4 @@
-"""Put a release together in `dist/`: wheel, sites, PDFs, EPUB, notebooks, their list and checksums.
+"""Put a release together in `dist/`: what `FILES` names, and notes, which begin with that list.
 
 There are two sites: pages to open from a folder, and the live ones, which run Python in the browser
 and want a server, as `python -m http.server`; neither needs a network.
@@ -18,26 +18,44 @@ import re
 import shutil
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import yaml
+from dd_cite import names
 
 ROOT = Path(__file__).parents[2]
 CRATE, SPDX = "ro-crate-metadata.json", "https://spdx.org/licenses/"
 VERSION = re.compile(r'^__version__ = "(.+)"$', re.M)
 ENTRY = re.compile(r"^## (\S+) \((\d{4}-\d\d-\d\d)\)$", re.M)
-MADE = {"notebooks.zip": "html/notebooks.zip", "walk.pdf": "pdf/walk.pdf",
-        "evidence.pdf": "pdf/evidence.pdf", "book.epub": "epub/book.epub"}  # fmt: skip
-"""Names in the release, and where they are made below `_build`."""
-BESIDE = (".zenodo.json", "paper/paper.md", "paper/metadata.yaml")
+FILES = {
+    "live-*.zip": ("live/index.html", "the book whose lessons run in the browser: unzip it, run "
+                   "`python -m http.server --directory live`, open `http://localhost:8000`"),
+    "site-*.zip": ("html/index.html", "the book to read: unzip it, open `site/index.html`"),
+    "walk-*.pdf": ("pdf/walk.pdf", "the lessons, to print"),
+    "evidence-*.pdf": ("pdf/evidence.pdf", "what lies behind the lessons, to print"),
+    "book-*.epub": ("epub/book.epub", "the lessons, for a reader of e-books"),
+    "notebooks-*.zip": ("html/notebooks.zip", "the notebooks with their figures, to read in "
+                        "JupyterLab; to run them, unzip the source, and in it run `make lab`"),
+    "source-*.zip": ("", "the repository: its `README.md` says how to build and test the book"),
+    "*.whl": ("", "the package `ddlib` alone: `python -m pip install` and this file"),
+    CRATE: ("", "this list for archives and indexes"),
+    "SHA256SUMS": ("", "checksums: `sha256sum -c SHA256SUMS`"),
+}  # fmt: skip
+"""What a release holds (`*` is its version), where that is made below `_build`, what it is for."""
+BESIDE = (".zenodo.json", "paper/paper.md", "paper/metadata.yaml", "LICENSE", "_config.yml",
+          "book/cite-reuse-report.md")  # fmt: skip
 """What names the authors beside the citation."""
 
 
 def git(root: Path, *words: str) -> str:
     """What git says, or nothing where it fails."""
-    answer = subprocess.run(
-        ["git", "-C", root, *words], capture_output=True, text=True, check=False
-    )
+    try:
+        answer = subprocess.run(
+            ["git", "-C", root, *words], capture_output=True, text=True, check=False
+        )
+    except OSError:  # no git here
+        return ""
     return answer.stdout.strip() if answer.returncode == 0 else ""
 
 
@@ -74,10 +92,14 @@ def disagreements(root: Path) -> list[str]:
     return wrong
 
 
-def notes(changelog: str) -> str:
-    """What its newest entry says."""
+def notes(cited: dict, changelog: str, folder: Path) -> str:
+    """What a release is, what each of its files is for, and what is new."""
     parts = re.split(r"^(?=## )", changelog, flags=re.M)
-    return next(part for part in parts if ENTRY.match(part)).partition("\n")[2].strip() + "\n"
+    new = next(part for part in parts if ENTRY.match(part)).partition("\n")[2].strip()
+    found = {name: next(folder.glob(name), Path(name)).name for name in FILES}
+    listed = "\n".join(f"- `{found[name]}`: {what}." for name, (_, what) in FILES.items())
+    title = f"# {cited['title']}, version {cited['version']} of {cited['date-released']}"
+    return f"{title}\n\n## Its files\n\n{listed}\n\n## What is new\n\n{new}\n"
 
 
 def crate(cited: dict, made: list[Path]) -> dict:
@@ -86,9 +108,9 @@ def crate(cited: dict, made: list[Path]) -> dict:
         {
             "@id": f"#author-{k}",
             "@type": "Person" if "family-names" in author else "Organization",
-            "name": author.get("name") or f"{author['given-names']} {author['family-names']}",
+            "name": name,
         }
-        for k, author in enumerate(cited["authors"], 1)
+        for k, (author, name) in enumerate(zip(cited["authors"], names(cited["authors"])), 1)
     ]
     files = [
         {
@@ -100,8 +122,8 @@ def crate(cited: dict, made: list[Path]) -> dict:
         }
         for path in made
     ]
-    names = cited["license"] if isinstance(cited["license"], list) else [cited["license"]]
-    licences = [{"@id": f"{SPDX}{name}", "@type": "CreativeWork", "name": name} for name in names]
+    given = cited["license"] if isinstance(cited["license"], list) else [cited["license"]]
+    licences = [{"@id": f"{SPDX}{name}", "@type": "CreativeWork", "name": name} for name in given]
     whole = {
         "@id": "./",
         "@type": "Dataset",
@@ -123,13 +145,31 @@ def crate(cited: dict, made: list[Path]) -> dict:
     return {"@context": "https://w3id.org/ro/crate/1.1/context", "@graph": graph}
 
 
-def archive(site: Path, target: Path) -> None:
-    """A site as one file; unzipped and served by `python -m http.server`, it is whole."""
-    shutil.make_archive(str(target.with_suffix("")), "zip", site)
+def archive(site: Path, target: Path, beside: list[Path]) -> None:
+    """A site and what goes with it, in a folder of its own, without the build's hidden marks."""
+    home = Path(target.name.partition("-")[0])
+    paths = {path: path.relative_to(site) for path in site.rglob("*") if path.is_file()}
+    paths |= {path: path.name for path in beside}
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as packed:
+        for path, name in sorted(paths.items()):
+            if not path.name.startswith("."):
+                packed.write(path, home / name)
+
+
+def wheel(root: Path, folder: Path) -> None:
+    """The package alone."""
+    asked = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "-w", folder, "."]
+    subprocess.run(asked, check=True, cwd=root)  # brackets in a path would be extras to pip
+
+
+def source(root: Path, target: Path) -> None:
+    """The repository as it was committed."""
+    asked = ["git", "-C", root, "archive", "--prefix=source/", "-o", target, "HEAD"]
+    subprocess.run(asked, check=True)
 
 
 def collect(root: Path, folder: Path) -> list[Path]:
-    """Make the wheel and the sites' archives, copy the rest, sum them up; what is there then.
+    """Make wheel, source and the sites' archives, copy the rest, sum them up; what is there then.
 
     Raises
     ------
@@ -137,24 +177,22 @@ def collect(root: Path, folder: Path) -> list[Path]:
         If something has not been made; the folder is not touched.
     """
     built, version = root / "_build", git(root, "describe", "--tags", "--always")
-    missing = [str(path) for path in MADE.values() if not (built / path).is_file()]
-    sites = {"site": "html", "live": "live"}
-    firsts = [f"{folder}/index.html" for folder in sites.values()]
-    missing += [first for first in firsts if not (built / first).is_file()]
-    if missing:
+    made = {name.replace("*", version): place for name, (place, _) in FILES.items() if place}
+    if missing := [place for place in made.values() if not (built / place).is_file()]:
         raise FileNotFoundError(f"not made yet, below _build: {', '.join(missing)}")
-    new = folder.with_name(f".{folder.name}")  # whole or not at all
+    new = folder.with_name(f".{folder.name}").resolve()  # whole or not at all
     shutil.rmtree(new, ignore_errors=True)
     new.mkdir(parents=True)
-    wheel = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "-w", new.resolve(), "."]
-    subprocess.run(wheel, check=True, cwd=root)  # brackets in a path would be extras to pip
-    for name, pages in sites.items():
-        archive(built / pages, new / f"{name}-{version}.zip")
-    for name, path in MADE.items():
-        stem, dot, ending = name.rpartition(".")
-        shutil.copyfile(built / path, new / f"{stem}-{version}{dot}{ending}")
-    (new / "NOTES.md").write_text(notes((root / "CHANGELOG.md").read_text("utf-8")), "utf-8")
+    wheel(root, new)
+    source(root, new / f"source-{version}.zip")
+    for name, place in made.items():
+        if place.endswith(".html"):
+            archive((built / place).parent, new / name, [*root.glob("LICENSE*")])
+        else:
+            shutil.copyfile(built / place, new / name)
     cited = yaml.safe_load((root / "CITATION.cff").read_text("utf-8"))
+    said = notes(cited, (root / "CHANGELOG.md").read_text("utf-8"), new)
+    (new / "NOTES.md").write_text(said, "utf-8")
     text = json.dumps(crate(cited, sorted(new.iterdir())), indent=1, ensure_ascii=False)
     (new / CRATE).write_text(text + "\n", encoding="utf-8")
     made = sorted(new.iterdir())

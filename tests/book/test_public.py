@@ -107,7 +107,7 @@ def test_all_notebooks_come_in_one_archive(built):
     assert "the-book" in notebook.cells[2].source
 
 
-CITED = "version: {}\ndate-released: {}\nauthors:\n- {}\n"
+CITED = "title: A book\nversion: {}\ndate-released: {}\nauthors:\n- {}\nlicense: MIT\nabstract: x\n"
 NOETHER = "{family-names: Noether, given-names: Emmy, email: noether@example.org}"
 
 
@@ -131,10 +131,9 @@ def tagged(tmp_path):
 
 def test_a_release_needs_tag_citation_and_changelog_to_agree(tagged):
     assert not release.disagreements(tagged)
-    assert release.notes((tagged / "CHANGELOG.md").read_text()) == "- New.\n"
     (tagged / "CITATION.cff").write_text(CITED.format("1.1.0", "2026-01-30", "family-names: Curie"))
     told = " ".join(release.disagreements(tagged))
-    assert "paper/paper.md does not name Curie" in told
+    assert all(f"{name} does not name Curie" in told for name in release.BESIDE)
     (tagged / "paper/paper.md").write_text("Marie Curie, of: to be filled in")
     assert "paper/paper.md still says" in " ".join(release.disagreements(tagged))
     (tagged / "CITATION.cff").write_text(CITED.format("1.1.0", "2026-01-30", "name: Some group"))
@@ -145,6 +144,11 @@ def test_a_release_needs_tag_citation_and_changelog_to_agree(tagged):
     assert "begins with 1.3.0" in " ".join(release.disagreements(tagged))
     subprocess.run(["git", "-C", tagged, "tag", "-d", "v1.2.0"], check=True, capture_output=True)
     assert "no tag v1.2.0" in " ".join(release.disagreements(tagged))
+
+
+def test_a_release_asks_wherever_a_group_stands_for_its_people():
+    told = release.git(ROOT, "grep", "-il", "the ddlib authors", "--", ":!tests")
+    assert set(told.splitlines()) <= {"CITATION.cff", *release.BESIDE}
 
 
 def test_pages_of_a_release_name_it_and_link_the_newest(tagged, monkeypatch):
@@ -171,7 +175,28 @@ def test_the_citation_names_the_newest_release_or_none():
     json.loads((ROOT / ".zenodo.json").read_text(encoding="utf-8"))
 
 
-def test_an_incomplete_release_leaves_nothing(tagged):
-    with pytest.raises(FileNotFoundError, match=r"walk\.pdf.* live/index\.html"):
+def test_a_release_is_whole_and_its_notes_say_what_each_file_is(tagged, monkeypatch):
+    with pytest.raises(FileNotFoundError, match=r"live/index\.html.* pdf/walk\.pdf"):
         release.collect(tagged, tagged / "dist")
     assert not list(tagged.glob("*dist"))
+    places = [place for place, _ in release.FILES.values() if place]
+    for place in (*places, "html/.buildinfo", "html/book/a.html", "live/.built-from"):
+        path = tagged / "_build" / place
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(place)
+    monkeypatch.setattr(release, "wheel", lambda root, folder: (folder / "a-1.whl").touch())
+    made = {path.name: path for path in release.collect(tagged, tagged / "dist")}
+    title, _, rest = made["NOTES.md"].read_text().partition("\n")
+    files, _, new = rest.partition("## What is new\n\n")
+    assert title == "# A book, version 1.2.0 of 2026-01-31" and new == "- New.\n"
+    listed = {line.split("`")[1] for line in files.splitlines() if line.startswith("- ")}
+    assert listed == made.keys() - {"NOTES.md"} and "walk-v1.2.0.pdf" in listed
+    packed = {}
+    for kind in ("site", "live", "source"):
+        with zipfile.ZipFile(made[f"{kind}-v1.2.0.zip"]) as archive:
+            packed[kind] = {name for name in archive.namelist() if not name.endswith("/")}
+    assert packed["site"] == {"site/index.html", "site/book/a.html", "site/notebooks.zip",
+                              "site/LICENSE"}  # fmt: skip
+    assert packed["live"] == {"live/index.html", "live/LICENSE"}
+    told = release.git(tagged, "ls-files").splitlines()
+    assert packed["source"] == {f"source/{name}" for name in told}

@@ -10,6 +10,8 @@ import pytest
 from book_pages import CHAPTERS, EVIDENCE, ROOT
 from bs4 import BeautifulSoup
 
+import ddlib
+
 
 def test_the_walk_has_every_lesson_and_the_second_volume_the_evidence():
     walk = [page for _, pages in pdf.contents(ROOT, "walk") for page in pages]
@@ -34,6 +36,7 @@ def volume(**changes) -> str:
 
 def test_a_volume_has_parts_contents_and_index():
     made = BeautifulSoup(volume(), "html.parser")
+    assert ", ".join(pdf.AUTHORS) in made.select_one(".front").text
     assert [item.text for item in made.select(".contents li")] == [
         "I & II", 'A "<b>"000', "B000", "Index000",
     ]  # fmt: skip
@@ -106,7 +109,9 @@ def test_printed_places_have_their_pages(browser, tmp_path):
         assert pdf.numbers(pdf.printed(page)) == {"one": 1, "two": 2}
 
 
-def test_an_epub_leads_from_file_to_file(tmp_path):
+def test_an_epub_leads_from_file_to_file(tmp_path, monkeypatch):
+    monkeypatch.setattr(epub, "AUTHORS", ["Ada & Co", "Emmy Noether"])
+    monkeypatch.setattr(epub, "git", lambda *words: "2026-01-31")
     picture = tmp_path / "a.png"
     picture.write_bytes(b"png")
     one = '<h1 id="a--start">A</h1><p data-x="1"><a href="#b--start">B</a></p>'
@@ -130,4 +135,6 @@ def test_an_epub_leads_from_file_to_file(tmp_path):
         assert archive.read("book/images/a.png") == b"png"
         manifest = archive.read("book/content.opf").decode()
         assert '"a.xhtml" media-type="application/xhtml+xml" properties="svg"' in manifest
+        assert ":walk:" + ddlib.__version__ + "<" in manifest and ">2026-01-31T00:" in manifest
+        assert "<dc:creator>Ada &amp; Co</dc:creator>\n<dc:creator>Emmy Noether<" in manifest
         assert "solutions.xhtml" in archive.read("book/nav.xhtml").decode()

@@ -8,7 +8,7 @@ import zipfile
 import pytest
 from book_pages import ROOT
 
-SOURCES = ("ddlib", "pyproject.toml", "README.md", "LICENSE")
+SOURCES = ("ddlib", "pyproject.toml", "README.md", "LICENSE", "LICENSE-CC-BY-4.0")
 WITHOUT_TORCH = (
     *("dynamics", "effects", "control", "simulation", "identification", "analysis"),
     *("figures", "widgets", "trajectories", "metrics", "tables", "paper", "_check", "_files"),
@@ -113,6 +113,8 @@ def test_every_file_of_the_package_is_in_the_wheel(site):
     packed = {path.relative_to(site) for path in (site / "ddlib").rglob("*") if path.is_file()}
     own = {path.relative_to(ROOT) for path in (ROOT / "ddlib").rglob("*") if path.is_file()}
     assert {path for path in own if "__pycache__" not in path.parts} == packed
+    licences = {path.name for path in site.glob("*.dist-info/licenses/*")}
+    assert licences == {path.name for path in ROOT.glob("LICENSE*")}  # one names the other
 
 
 def run(site, *codes: str) -> str:

@@ -8,7 +8,7 @@ import sys
 import chromium
 import pytest
 from book_pages import ROOT
-from live import packages
+from live import packages, pages
 from live.packages import PAGE, Refused, take
 from live.pages import write
 
@@ -32,6 +32,27 @@ def test_only_what_the_lock_names_is_taken_and_nothing_is_left_half_done(tmp_pat
         write(ROOT, site, str(tmp_path), store, out)
     assert sorted(store.iterdir()) == before  # not even the right one
     assert [path.read_text() for path in tmp_path.glob("live*/*")] == ["in live"]
+
+
+def test_recordings_of_others_come_with_their_licences(tmp_path, monkeypatch):
+    """In a page that reads them."""
+
+    def given(root, mirror, store, folder):
+        folder.mkdir(parents=True)
+        (folder / "isolate.js").touch()
+        return [1, 1], {}
+
+    monkeypatch.setattr(pages, "write_packages", given)
+    monkeypatch.setattr(pages, "live_page", lambda text, *rest: text)
+    (tmp_path / "html" / "book").mkdir(parents=True)
+    for name in ("index.html", "book/real-arm.html"):
+        (tmp_path / "html" / name).touch()
+    write(ROOT, tmp_path / "html", "", tmp_path, tmp_path / "live")
+    data = tmp_path / "live" / "_static" / "live" / "data"
+    beside = {path.name for path in data.iterdir()}
+    assert any(name.endswith(".npz") for name in beside)
+    assert beside > {path.name for path in (ROOT / "book" / "data").glob("LICENSE-*")}
+    assert "README.md" in beside
 
 
 def test_without_a_mirror_wheels_come_from_pyodides_address_and_stay(tmp_path, monkeypatch, capsys):

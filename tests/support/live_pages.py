@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import html
 import json
 import os
@@ -101,6 +102,8 @@ def served(folder: Path, names: Iterable[str]) -> Iterator[str]:
     for name in ("index.html", "favicon.ico"):
         (folder / "html" / name).touch()
     pages.write(ROOT, folder / "html", MIRROR, KEPT, folder / "out")
+    started = folder / "out" / "_static" / "live" / "pyodide" / packages.STARTED
+    assert os.fsencode(ROOT) not in gzip.decompress(started.read_bytes())  # it goes to strangers
     with pytest.MonkeyPatch.context() as patch, chromium.serve(folder / "out") as address:
         patch.setattr(chromium, "POLICY", POLICY)
         yield address

@@ -73,6 +73,9 @@ def write(root: Path, site: Path, mirror: str, store: Path, out: Path) -> list[s
             for name in DATA.findall("\n".join(cell.source for cell in notebook.cells)):
                 (folder / "data").mkdir(exist_ok=True)
                 shutil.copyfile(root / "book" / "data" / name, folder / "data" / name)
+        if (folder / "data").is_dir():  # others made them
+            for path in [*(root / "book" / "data").glob("LICENSE-*"), root / "book/data/README.md"]:
+                shutil.copy(path, folder / "data")
         if (part / FIRST_PAGE).is_file():
             offer(part)
         shutil.rmtree(out, ignore_errors=True)

@@ -8,6 +8,7 @@ import { gzipSync } from "node:zlib";
 import { unpack, unzipped } from "./page/packs.mjs";
 
 const [folder, target, ...packs] = process.argv.slice(2);
+process.argv[1] = "./this.program"; // as in a browser: Python keeps in its memory where its program lies
 const { loadPyodide } = await import(pathToFileURL(`${folder}/pyodide.mjs`));
 const options = { indexURL: `${folder}/`, convertNullToNone: true };
 const whole = await loadPyodide(options);
