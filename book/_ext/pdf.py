@@ -19,12 +19,15 @@ from pathlib import Path
 sys.path.append(str(Path(__file__).parents[2] / "tests" / "support"))  # how a browser is found
 import chromium
 import yaml
-from dd_cite import FILE, names
+from dd_cite import FILE, edition, names
 from dd_public import repository, site
 from jinja2 import Environment, FileSystemLoader, Template
 from lessons import parts, with_below
 from offers import offer
+from release import git
 from tqdm import tqdm
+
+import ddlib
 
 ROOT = Path(__file__).parents[2]
 HERE = Path(__file__).with_name("pdf_pages")  # what runs in a page, and how a volume looks
@@ -66,7 +69,9 @@ def taken(browser, built: Path, parts, progress, book: bool = False) -> list[dic
     """
     chapters = {name for _, pages in parts for name in pages}
     script, found = (HERE / "take.js").read_text(encoding="utf-8"), []
-    page = browser.new_page(viewport={"width": 640, "height": 900}, color_scheme="light")
+    page = browser.new_page(
+        viewport={"width": 640, "height": 900}, color_scheme="light", reduced_motion="reduce"
+    )  # what moves stands still, and the landing page's arm in its best moment
     page.emulate_media(media="print")
     for part, pages in parts:
         for name in pages:
@@ -94,6 +99,14 @@ def template(name: str) -> Template:
     return home.get_template(f"{name}.jinja")
 
 
+def imprint(root: Path) -> str:
+    """Version and day of a release; between two releases, those of the text."""
+    if released := edition(root):
+        return f"Version {released}"
+    day = git(root, "log", "-1", "--format=%cs")
+    return f"Version {ddlib.__version__}, not released" + (f": the text of {day}" if day else "")
+
+
 def joined(volume: str, found: list[dict]) -> str:
     """A volume as one HTML document; three zeros hold the places of its page numbers."""
     return template("volume.html").render(
@@ -101,6 +114,7 @@ def joined(volume: str, found: list[dict]) -> str:
         authors=AUTHORS,
         name=VOLUMES[volume],
         address=site(repository()) if repository() else "",
+        imprint=imprint(ROOT),
         styles=dict.fromkeys(style for chapter in found for style in chapter["styles"]),
         look=(HERE / "volume.css").read_text(encoding="utf-8"),
         chapters=found,

@@ -15,7 +15,7 @@
   const all = (selector, from = article) => [...from.querySelectorAll(selector)];
   const shown = all("*", live).map((el) => getComputedStyle(el).display !== "none");
   all("*").forEach((el, k) => { if (!shown[k] && !el.closest("svg, mjx-container, details")) el.dataset.gone = ""; });
-  for (const el of all("[data-gone], script, .headerlink, .copybtn, .toggle-details, noscript, details.hide > summary, .tag_hide-input > details.hide, svg rect:not([width]), .ddlib-widget :is(button, select, input, .remark, .footer)")) el.remove();
+  for (const el of all("[data-gone], script, .toctree-wrapper, .headerlink, .copybtn, .toggle-details, noscript, details.hide > summary, .tag_hide-input > details.hide, svg rect:not([width]), .ddlib-widget :is(button, select, input, .remark, .footer)")) el.remove();
   for (const place of all(".exercise-answer")) place.closest(".cell_output").remove(); // to be handled
   for (const fold of all("details:not(.claim)")) fold.open = true;
   for (const fold of all("details.hide")) fold.replaceWith(...fold.childNodes);

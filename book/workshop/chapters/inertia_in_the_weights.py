@@ -70,9 +70,9 @@ def weigh() -> WeighTheArm:
     """The scales, for the landing page's networks and one of shifted torques."""
     a, b = twins()
     networks = {
-        "this arm's torques (A)": a.model,
-        "a spring's torques (B)": b.model,
-        "torques shifted in time": _networks()["shifted in time"][0],
+        "this arm's (A)": a.model,
+        "a spring's (B)": b.model,
+        "shifted in time": _networks()["shifted in time"][0],
     }
     windows, _ = cases(_training(), _WIDTH)
     return WeighTheArm(networks, windows, _arm(), _added)

@@ -64,7 +64,8 @@ function build({ model, el }) {
   const x = rows[labels[0]].map((_, k) => step * (k - half));
   const widest = largest(motion[0]) / RAD;
   let row, parts, played; // of the chosen row
-  let most, tall, highest; // of a jar, of a product and of what is played
+  let most, tall; // of a jar and of a product, if the wire moves in one way
+  let highest; // of what is played
   let moment = -1; // of the motion, or -1 while the wire is the reader's
   let timer = 0;
 
@@ -255,14 +256,17 @@ function build({ model, el }) {
   function drawBands(path) {
     const open = get("fold") === 1;
     hint.style.display = open ? "none" : "";
+    const playing = moment >= 0;
+    const poured = bands.map(({ name }) => parts[name].map((f, k) => f * path[k] * RAD));
+    const longest = Math.max(tall, largest(poured.flat())); // of one scale in all lanes: nothing is cut
+    const full = playing ? highest : Math.max(most, largest(poured.map(sum)));
     bands.forEach((band, i) => {
       const { middle, height, top } = at.bands[i];
       band.g.style.display = open ? "" : "none";
-      const products = parts[band.name].map((f, k) => f * path[k] * RAD);
+      const products = poured[i];
       const whole = sum(products);
       const width = 0.62 * (xOf(1) - xOf(0));
-      const y = (value) => Math.max(-1, Math.min(1, value / tall)) * (height / 2);
-      const playing = moment >= 0;
+      const y = (value) => (value / longest) * (height / 2);
       band.bars.replaceChildren(...(playing ? [] : products.map((value, k) => make("rect", {
         class: value < 0 ? "bar hollow" : "bar", x: short(xOf(k) - width / 2), width: short(width),
         y: short(middle - Math.max(0, y(value))), height: short(Math.max(0.5, Math.abs(y(value)))),
@@ -278,14 +282,13 @@ function build({ model, el }) {
       put(band.pair, { x: (at.x0 + at.x1) / 2, y: top + 7, class: "pair x" });
       const [a, both] = [first, first + last].map((value) => Number(value.toFixed(digits())));
       const b = both - a; // the second as printed, so that the sum closes
-      write(band.pair, told ? `${numberOf(a)} ${b < 0 ? "−" : "+"} ${numberOf(Math.abs(b))} = ${numberOf(both)}` : "");
+      write(band.pair, told ? `outer pair: ${numberOf(a)} ${b < 0 ? "−" : "+"} ${numberOf(Math.abs(b))} = ${numberOf(both)}` : "");
       // the row's part, small
       const thumb = largest([...parts.even, ...parts.odd]) / 10;
       const spot = (k) => 2 + 4.2 * k;
       band.thumbs.replaceChildren(...(at.narrow ? [] : parts[band.name].map((f, k) => make("path", { class: "thumb", d: `M${spot(k)} ${middle + 15}V${short(middle + 15 - f / thumb)}M${spot(k)} ${short(middle + 15 - f / thumb)}h0` }))));
       // the jar
-      const full = playing ? highest : most;
-      const fill = Math.max(-1, Math.min(1, whole / full)) * (height / 2 - 5); // from zero, in the middle
+      const fill = (whole / full) * (height / 2 - 5); // from zero, in the middle
       const [left, wave] = [at.jar + 2.5, (at.jarWide - 5) / 4];
       const surface = `q${wave / 2} -4 ${wave} 0t${wave} 0t${wave} 0t${wave} 0`;
       put(band.jar.level, { class: whole < 0 ? "level hollow" : "level", d: Math.abs(fill) < 1 ? "M0 0" : `M${left} ${short(middle - fill)}${surface}V${middle}H${left}Z` });

@@ -95,7 +95,7 @@ class WeighTheArm(CurveWidget):
                     "pencil", "Write it into the weights",
                     {False: "no", True: "yes"}, False, "switch",
                 ),
-                Choice("learnt", "The network learnt", names, names[0]),
+                Choice("learnt", "Learnt torques", names, names[0]),
             ],
             [
                 Panel("Gradient g, N m/rad", "gradient", CENTRE, time, kind="stems", **shade),
