@@ -28,7 +28,7 @@ from ddlib.simulation import record
 from ddlib.trajectories import random_extents
 from workshop.report.results import BOOK
 
-SOUND, FEW = 100, 10
+SOUND, FEW = 200, 10
 
 
 def arm_of(rng, hangs) -> Arm:
@@ -157,7 +157,7 @@ BY_EQUATIONS = {
 
 @pytest.mark.parametrize("made", [swinging, driven])
 def test_sound_recordings_are_not_called_wrong(made):
-    """None of 100; doubtful is at most the torque that a controller computed, by rights."""
+    """None of 200; doubtful is at most the torque that a controller computed, by rights."""
     doubtful = Counter()
     for seed in range(SOUND if made is swinging else FEW):
         hangs, recording = made(seed)
